@@ -1,0 +1,12 @@
+//! Floor 3: shapes. `Mesh` is what files hold; `Shapes` is what rays meet; `Aggregate` is shapes
+//! under a BVH with the batch tracing interface.
+
+mod aggregate;
+mod hit;
+mod mesh;
+mod shapes;
+
+pub use aggregate::{Aggregate, TraceCounts};
+pub use hit::Hit;
+pub use mesh::{Corner, Mesh, MeshTriangle};
+pub use shapes::{Shapes, Sphere};

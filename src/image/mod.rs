@@ -1,0 +1,63 @@
+//! Floor 2: plain pixels and rectangles of them.
+
+mod region;
+
+pub use region::Region;
+
+/// A rectangle of pixels, row by row from the top left, y down.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Image<T> {
+    width: usize,
+    height: usize,
+    pixels: Vec<T>,
+}
+
+impl<T> Image<T> {
+    /// An image from its rows.
+    ///
+    /// # Panics
+    /// When `pixels` does not hold `width · height` values.
+    pub fn from_pixels(width: usize, height: usize, pixels: Vec<T>) -> Self {
+        assert_eq!(
+            pixels.len(),
+            width * height,
+            "an image of {width}×{height} pixels"
+        );
+        Self {
+            width,
+            height,
+            pixels,
+        }
+    }
+
+    /// Width in pixels.
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Height in pixels.
+    pub fn height(&self) -> usize {
+        self.height
+    }
+
+    /// All pixels, row by row from the top.
+    pub fn pixels(&self) -> &[T] {
+        &self.pixels
+    }
+
+    /// The pixel in column `x` of row `y`.
+    pub fn get(&self, x: usize, y: usize) -> &T {
+        &self.pixels[y * self.width + x]
+    }
+}
+
+impl<T: Clone> Image<T> {
+    /// An image of one value.
+    pub fn filled(width: usize, height: usize, value: T) -> Self {
+        Self {
+            width,
+            height,
+            pixels: vec![value; width * height],
+        }
+    }
+}

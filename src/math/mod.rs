@@ -1,0 +1,11 @@
+//! Floor 0: what glam lacks. Rays, boxes, shading frames, robust ray origins.
+
+mod aabb;
+mod frame;
+mod offset;
+mod ray;
+
+pub use aabb::Aabb;
+pub use frame::Frame;
+pub use offset::{SHADOW_T_MAX, gamma, offset_origin};
+pub use ray::Ray;

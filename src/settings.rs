@@ -1,0 +1,318 @@
+//! Floor 4: every setting of a render, defined once. The command line, the viewer's panels, the
+//! file metadata and the JSON output all come from these definitions; the doc comments serve as
+//! help and tooltip.
+
+use serde::{Deserialize, Serialize};
+
+use crate::bvh::BvhSettings;
+use crate::image::Region;
+
+/// How direct light is estimated. All modes converge to the same picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Mode {
+    /// Uniform directions over the hemisphere, the course's first estimator; (lights × light
+    /// samples) directions a vertex. Point-like lights are sampled directly.
+    Hemisphere,
+    /// Every light sampled at every vertex, light-samples times each (point-like lights once).
+    Importance,
+    /// One light chosen by power, multiple-importance weighting against the material.
+    #[default]
+    Best,
+}
+
+impl Mode {
+    /// All modes, in the order in which they are offered.
+    pub const ALL: [Self; 3] = [Self::Hemisphere, Self::Importance, Self::Best];
+
+    /// The name used in the command line, the window and the metadata.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Hemisphere => "hemisphere",
+            Self::Importance => "importance",
+            Self::Best => "best",
+        }
+    }
+}
+
+/// Which path tracer runs. Both draw the same random numbers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum IntegratorKind {
+    /// One path at a time: plain, slow, the oracle.
+    Reference,
+    /// Batches of a few thousand paths, stage by stage.
+    #[default]
+    Wavefront,
+}
+
+/// The largest number of bounces at surfaces: 0 = emission seen directly, 1 = direct light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct MaxDepth(pub u32);
+
+impl MaxDepth {
+    /// No limit; Russian roulette alone ends paths.
+    pub const INFINITE: Self = Self(u32::MAX);
+}
+
+impl std::fmt::Display for MaxDepth {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        if *self == Self::INFINITE {
+            f.write_str("inf")
+        } else {
+            write!(f, "{}", self.0)
+        }
+    }
+}
+
+impl std::str::FromStr for MaxDepth {
+    type Err = String;
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "inf" | "infinite" => Ok(Self::INFINITE),
+            _ => text
+                .parse()
+                .map(Self)
+                .map_err(|_| format!("'{text}' is not a depth: give a whole number or 'inf'")),
+        }
+    }
+}
+
+/// When an adaptive pixel may stop.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum AdaptiveRule {
+    /// The course's rule: each pixel alone, by its luminance.
+    Course,
+    /// At least 64 samples (256 in hemisphere mode), all channels, pooled over 3×3 pixels, an
+    /// absolute floor for dark pixels, and no neighbour still open.
+    #[default]
+    Neighbourhood,
+}
+
+/// Adaptive sampling by the 95 % confidence interval. Biased: off by default.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Adaptive {
+    /// Samples between two decisions.
+    pub batch: u32,
+    /// Half width of the interval as a fraction of the mean at which a pixel stops.
+    pub tolerance: f32,
+    /// The rule that decides.
+    pub rule: AdaptiveRule,
+}
+
+/// Where the camera comes from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum CameraRule {
+    /// The course's rule for files of its dialect, the file's camera for others, fitted without one.
+    #[default]
+    Auto,
+    /// Target = centre of the bounding box, 1.5 diagonals away, direction from the file's camera.
+    Course,
+    /// The file's camera as it stands.
+    File,
+    /// The whole scene in view.
+    Fit,
+}
+
+/// What a picture shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum View {
+    /// The path-traced picture.
+    #[default]
+    Render,
+    /// Shading normals, mapped to 0.5 n + 0.5.
+    Normals,
+    /// Geometric normals, mapped alike.
+    GeometricNormals,
+    /// Reflectance (or tint) of the first surface.
+    Albedo,
+    /// Distance from the camera, near bright.
+    Depth,
+    /// Box and primitive tests of the camera ray.
+    Cost,
+    /// Samples taken in each pixel, blue (few) to red (most).
+    Samples,
+    /// Estimated relative error of each pixel.
+    Noise,
+}
+
+impl View {
+    /// All views, in the order in which they are offered.
+    pub const ALL: [Self; 8] = [
+        Self::Render,
+        Self::Normals,
+        Self::GeometricNormals,
+        Self::Albedo,
+        Self::Depth,
+        Self::Cost,
+        Self::Samples,
+        Self::Noise,
+    ];
+
+    /// The name used in the command line, the window and the metadata.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Render => "render",
+            Self::Normals => "normals",
+            Self::GeometricNormals => "geometric-normals",
+            Self::Albedo => "albedo",
+            Self::Depth => "depth",
+            Self::Cost => "cost",
+            Self::Samples => "samples",
+            Self::Noise => "noise",
+        }
+    }
+
+    /// True for views that need only the first hit of each camera ray and no light.
+    pub fn is_first_hit(self) -> bool {
+        !matches!(self, Self::Render | Self::Samples | Self::Noise)
+    }
+}
+
+/// When a render is finished, whichever comes first; nothing set means never.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct StopRule {
+    /// Samples per pixel (the most of them, with adaptive sampling).
+    pub samples_per_pixel: Option<u32>,
+    /// Seconds of rendering.
+    pub seconds: Option<f64>,
+    /// Estimated relative error of the whole picture.
+    pub relative_error: Option<f64>,
+}
+
+/// Everything that decides what is rendered, apart from the scene and the camera.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct RenderSettings {
+    /// Image width in pixels.
+    pub width: u32,
+    /// Image height in pixels.
+    pub height: u32,
+    /// Render only this part of the image.
+    pub region: Option<Region>,
+    /// Light samples per area light and vertex.
+    pub light_samples: u32,
+    /// Largest number of bounces.
+    pub max_depth: MaxDepth,
+    /// Keep only the light of the last bounce (`-o 0` of the course).
+    pub only_last_bounce: bool,
+    /// Estimator of direct light.
+    pub mode: Mode,
+    /// Path tracer.
+    pub integrator: IntegratorKind,
+    /// Adaptive sampling, off when `None`.
+    pub adaptive: Option<Adaptive>,
+    /// Seed of all random numbers.
+    pub seed: u64,
+    /// Reproduce the course program's picture on purpose, with its errors.
+    pub course_compatible: bool,
+    /// BVH build.
+    pub bvh: BvhSettings,
+    /// Worker threads; 0 = all cores. Never changes the picture.
+    pub threads: usize,
+    /// When to stop.
+    pub stop: StopRule,
+    /// What the picture shows.
+    pub view: View,
+}
+
+impl Default for RenderSettings {
+    fn default() -> Self {
+        Self {
+            width: 800,
+            height: 600,
+            region: None,
+            light_samples: 1,
+            max_depth: MaxDepth(5),
+            only_last_bounce: false,
+            mode: Mode::Best,
+            integrator: IntegratorKind::Wavefront,
+            adaptive: None,
+            seed: 0,
+            course_compatible: false,
+            bvh: BvhSettings::default(),
+            threads: 0,
+            stop: StopRule::default(),
+            view: View::Render,
+        }
+    }
+}
+
+impl RenderSettings {
+    /// The pixels to render: the region inside the image, else the whole image.
+    pub fn active_region(&self) -> Region {
+        let whole = Region {
+            x: 0,
+            y: 0,
+            width: self.width,
+            height: self.height,
+        };
+        self.region
+            .and_then(|r| r.clipped(self.width, self.height))
+            .unwrap_or(whole)
+    }
+
+    /// The worker threads that `threads` stands for.
+    pub fn thread_count(&self) -> usize {
+        match self.threads {
+            0 => std::thread::available_parallelism().map_or(1, std::num::NonZero::get),
+            n => n,
+        }
+    }
+}
+
+/// Tone curve from linear radiance to 0..1.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ToneCurve {
+    /// Exact sRGB, clipped at 1.
+    #[default]
+    Srgb,
+    /// The course's: exposure √2, then the power 1/2.2.
+    Course,
+    /// Reinhard 2002 on each channel, then sRGB.
+    Reinhard,
+    /// A filmic curve (Narkowicz 2015 fit of ACES), then sRGB.
+    Filmic,
+}
+
+impl ToneCurve {
+    /// All curves, in the order in which they are offered.
+    pub const ALL: [Self; 4] = [Self::Srgb, Self::Course, Self::Reinhard, Self::Filmic];
+
+    /// The name used in the command line, the window and the metadata.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Srgb => "srgb",
+            Self::Course => "course",
+            Self::Reinhard => "reinhard",
+            Self::Filmic => "filmic",
+        }
+    }
+}
+
+/// How linear pixels become displayed ones. Never restarts a render.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct DisplaySettings {
+    /// Exposure in stops: radiance is multiplied by 2^exposure.
+    pub exposure: f32,
+    /// Tone curve.
+    pub tone_curve: ToneCurve,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn depth_reads_and_prints_inf() {
+        assert_eq!("inf".parse(), Ok(MaxDepth::INFINITE));
+        assert_eq!("3".parse(), Ok(MaxDepth(3)));
+        assert!("-1".parse::<MaxDepth>().is_err());
+        assert_eq!(MaxDepth::INFINITE.to_string(), "inf");
+    }
+}
