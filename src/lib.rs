@@ -1,6 +1,7 @@
 //! softbox: a progressive path tracer for the CPU, without a window.
 
 pub mod bvh;
+pub mod camera;
 pub mod color;
 pub mod geometry;
 pub mod image;

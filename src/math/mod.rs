@@ -2,10 +2,12 @@
 
 mod aabb;
 mod frame;
+mod normalization;
 mod offset;
 mod ray;
 
 pub use aabb::Aabb;
 pub use frame::Frame;
+pub use normalization::Normalization;
 pub use offset::{SHADOW_T_MAX, gamma, offset_origin};
 pub use ray::Ray;
