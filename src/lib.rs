@@ -3,9 +3,12 @@
 pub mod bvh;
 pub mod camera;
 pub mod color;
+pub mod film;
 pub mod geometry;
 pub mod image;
+pub mod integrator;
 pub mod math;
 pub mod sampling;
 pub mod scene;
+pub mod session;
 pub mod settings;

@@ -2,8 +2,19 @@
 //! scenes that come with the program.
 
 mod description;
+mod emitters;
+mod initial_camera;
+mod interaction;
+mod lights;
+mod prepare;
+mod prepared;
+mod shading_normals;
 
 pub use description::{
-    Dialect, Environment, EnvironmentMap, FieldOfView, FileCamera, Geometry, Instance, LightKind,
-    LightNode, Material, Scene, Surface, UpAxis,
+    Dialect, Environment, EnvironmentMap, FieldOfView, FileCamera, Geometry, Instance, LightKind, LightNode,
+    Material, Scene, Surface, UpAxis,
 };
+pub use initial_camera::initial_camera;
+pub use interaction::SurfaceInteraction;
+pub use prepare::{PrepareSettings, prepare};
+pub use prepared::PreparedScene;

@@ -1,0 +1,108 @@
+//! Floor 3: accumulated statistics of the picture, in disjoint tiles.
+
+mod pixel;
+mod tile;
+
+pub use pixel::PixelStats;
+pub use tile::{Tile, TILE_SIZE};
+
+use crate::image::Region;
+
+/// The running mean and variance of every pixel of a region, tile by tile.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Film {
+    region: Region,
+    tiles: Vec<Tile>,
+}
+
+impl Film {
+    /// An empty film of `region`.
+    pub fn new(region: Region) -> Self {
+        Self { region, tiles: tile::cover(region) }
+    }
+
+    /// The pixels that the film covers, in image coordinates.
+    pub fn region(&self) -> Region {
+        self.region
+    }
+
+    /// The tiles; they are disjoint and cover the region.
+    pub fn tiles(&self) -> &[Tile] {
+        &self.tiles
+    }
+
+    /// The tiles, to be filled side by side.
+    pub fn tiles_mut(&mut self) -> &mut [Tile] {
+        &mut self.tiles
+    }
+
+    /// The statistics of the pixel at image coordinates `x`, `y`; `None` outside the region.
+    pub fn pixel(&self, x: u32, y: u32) -> Option<&PixelStats> {
+        if !self.region.contains(x, y) {
+            return None;
+        }
+        let (column, row) = ((x - self.region.x) / TILE_SIZE, (y - self.region.y) / TILE_SIZE);
+        let tile = &self.tiles[(row * self.region.width.div_ceil(TILE_SIZE) + column) as usize];
+        Some(&tile.pixels()[tile.index(x, y)])
+    }
+
+    /// Sums over all pixels: samples taken, and the relative squared error of the picture that
+    /// the sample variance predicts (see [`PixelStats::relative_squared_error`]).
+    pub fn summary(&self) -> FilmSummary {
+        let mut summary = FilmSummary::default();
+        let mut error = 0.0;
+        for pixel in self.tiles.iter().flat_map(Tile::pixels) {
+            summary.pixels += 1;
+            summary.samples += u64::from(pixel.count());
+            summary.most = summary.most.max(pixel.count());
+            match pixel.relative_squared_error() {
+                Some(e) => error += e,
+                None => summary.unknown += 1,
+            }
+        }
+        let known = summary.pixels - summary.unknown;
+        if summary.unknown == 0 && known > 0 {
+            summary.relative_error = Some((error / known as f64).sqrt());
+        }
+        summary
+    }
+}
+
+/// What [`Film::summary`] tells.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FilmSummary {
+    /// Number of pixels.
+    pub pixels: u64,
+    /// Samples in all pixels together.
+    pub samples: u64,
+    /// Most samples in one pixel.
+    pub most: u32,
+    /// Pixels with fewer than two samples, whose error is unknown.
+    pub unknown: u64,
+    /// Root of the mean relative squared error; `None` while some pixel's error is unknown.
+    pub relative_error: Option<f64>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::color::Rgb;
+
+    #[test]
+    fn tiles_cover_odd_regions_once_and_pixels_are_found() {
+        let region = Region { x: 5, y: 7, width: 71, height: 45 };
+        let mut film = Film::new(region);
+        let covered: usize = film.tiles().iter().map(|t| t.pixels().len()).sum();
+        assert_eq!(covered, 71 * 45);
+        for tile in film.tiles_mut() {
+            for i in 0..tile.pixels().len() {
+                let (x, y) = tile.position(i);
+                tile.pixels_mut()[i].add(Rgb::new(x as f32, y as f32, 0.0));
+            }
+        }
+        for (x, y) in [(5, 7), (75, 51), (40, 40), (36, 38), (37, 39)] {
+            assert_eq!(film.pixel(x, y).map(PixelStats::mean), Some([f64::from(x), f64::from(y), 0.0]));
+        }
+        assert!(film.pixel(4, 7).is_none() && film.pixel(76, 7).is_none());
+    }
+}

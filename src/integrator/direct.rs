@@ -1,0 +1,145 @@
+//! Direct light at a vertex: which samples are taken, and the rays they ask for.
+
+use super::path::{Path, Vertex};
+use super::{PathSettings, PathTracer};
+use crate::color::Rgb;
+use crate::geometry::Hit;
+use crate::math::{Ray, SHADOW_T_MAX, gamma, offset_origin};
+use crate::sampling::{Slot, UNIFORM_HEMISPHERE_PDF, power_heuristic, uniform_hemisphere};
+use crate::scene::PreparedScene;
+use crate::settings::Mode;
+
+/// One direct light sample of a vertex.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum DirectSample {
+    /// Light `light` of the scene, weighted 1 / (samples of this light).
+    Light { light: u32, weight: f32 },
+    /// A light chosen by power, shared with the scattered ray by multiple importance.
+    AnyLight { weight: f32 },
+    /// A uniform direction of the hemisphere; what it meets is taken as it is.
+    Hemisphere { weight: f32 },
+}
+
+/// The direct light samples that every vertex takes, in order. The number of a sample in the plan
+/// is its random number slot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DirectPlan {
+    pub(super) samples: Vec<DirectSample>,
+}
+
+impl DirectPlan {
+    /// The plan of `settings` for `scene`: empty when nothing can be sampled.
+    pub fn new(scene: &PreparedScene, settings: &PathSettings) -> Self {
+        let n = settings.light_samples;
+        let lights = scene.sampled_lights();
+        let per_light = |light: u32| {
+            let count = if scene.light(light).is_delta() { 1 } else { n };
+            std::iter::repeat_n(DirectSample::Light { light, weight: 1.0 / count as f32 }, count as usize)
+        };
+        let samples = match settings.mode {
+            _ if settings.max_depth.0 == 0 => Vec::new(),
+            Mode::Importance => lights.iter().copied().flat_map(per_light).collect(),
+            Mode::Best if lights.is_empty() => Vec::new(),
+            Mode::Best if scene.is_course_compatible() => lights.iter().copied().flat_map(per_light).collect(),
+            Mode::Best => vec![DirectSample::AnyLight { weight: 1.0 / n as f32 }; n as usize],
+            Mode::Hemisphere => {
+                let count = scene.hemisphere_light_count() * n;
+                let mut samples = vec![DirectSample::Hemisphere { weight: 1.0 / count as f32 }; count as usize];
+                if !scene.is_course_compatible() {
+                    let delta = lights.iter().copied().filter(|&light| scene.light(light).is_delta());
+                    samples.extend(delta.map(|light| DirectSample::Light { light, weight: 1.0 }));
+                }
+                samples
+            }
+        };
+        Self { samples }
+    }
+
+    /// Number of direct light samples a vertex.
+    pub fn len(&self) -> usize {
+        self.samples.len()
+    }
+
+    /// True when a vertex takes none.
+    pub fn is_empty(&self) -> bool {
+        self.samples.is_empty()
+    }
+}
+
+/// A ray that carries direct light to a vertex.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum DirectRay {
+    /// Adds `contribution` to the path's radiance when nothing lies on the ray.
+    Shadow { ray: Ray, contribution: Rgb },
+    /// Adds what the ray meets, times `factor`.
+    Gather { ray: Ray, factor: Rgb },
+}
+
+impl PathTracer<'_> {
+    /// True when direct light at the vertex that `path` has reached is part of the picture.
+    pub(super) fn wants_direct(&self, path: &Path, vertex: &Vertex<'_>) -> bool {
+        !vertex.bsdf.is_delta() && self.counts_depth(path.bounce + 1)
+    }
+
+    /// The ray of direct light sample `number` of the plan; `None` when it would carry nothing.
+    pub(super) fn direct_ray(&self, path: &Path, vertex: &Vertex<'_>, number: u32) -> Option<DirectRay> {
+        match self.plan.samples[number as usize] {
+            DirectSample::Light { light, weight } => self.shadow_ray(path, vertex, number, light, weight),
+            DirectSample::AnyLight { weight } => {
+                let u = path.sampler.get_1d(path.bounce, Slot::LightChoice(number));
+                let (light, pmf) = self.scene.choose_light(u)?;
+                self.shadow_ray(path, vertex, number, light, weight / pmf)
+            }
+            DirectSample::Hemisphere { weight } => {
+                let mut local = uniform_hemisphere(path.sampler.get_2d(path.bounce, Slot::Hemisphere(number)));
+                if vertex.wo.z < 0.0 {
+                    local.z = -local.z;
+                }
+                let wi = vertex.frame.to_world(local).normalize_or_zero();
+                let local = vertex.local(wi)?;
+                let scattered = vertex.bsdf.eval(vertex.wo, local) * local.z.abs();
+                let factor = path.throughput * scattered * (weight / UNIFORM_HEMISPHERE_PDF);
+                (factor != Rgb::ZERO).then(|| DirectRay::Gather { ray: Ray::new(vertex.origin(wi), wi), factor })
+            }
+        }
+    }
+
+    fn shadow_ray(&self, path: &Path, vertex: &Vertex<'_>, number: u32, light: u32, weight: f32) -> Option<DirectRay> {
+        let u = path.sampler.get_2d(path.bounce, Slot::LightPoint(number));
+        let u_part = path.sampler.get_2d(path.bounce, Slot::LightChoice(number)).y;
+        let sample = self.scene.light(light).sample(self.scene.shapes(), vertex.surface.point, u_part, u)?;
+        let local = vertex.local(sample.wi)?;
+        let scattered = vertex.bsdf.eval(vertex.wo, local) * local.z.abs();
+        let mut contribution = path.throughput * scattered * sample.radiance * (weight / sample.pdf);
+        if contribution == Rgb::ZERO {
+            return None;
+        }
+        if self.shares_emission() && !sample.is_delta {
+            let n = self.settings.light_samples as f32;
+            let light_pdf = n * sample.pdf * self.scene.light_pmf(light);
+            contribution *= power_heuristic(light_pdf, vertex.bsdf.pdf(vertex.wo, local));
+        }
+        let origin = vertex.origin(sample.wi);
+        let ray = if sample.distance.is_finite() {
+            let error = gamma(8) * sample.point.abs();
+            let target = offset_origin(sample.point, error, sample.normal, -sample.wi);
+            Ray::segment(origin, target - origin, SHADOW_T_MAX)
+        } else {
+            Ray::new(origin, sample.wi)
+        };
+        Some(DirectRay::Shadow { ray, contribution })
+    }
+
+    /// True when light samples and scattered rays share emission by multiple importance.
+    pub(super) fn shares_emission(&self) -> bool {
+        self.settings.mode == Mode::Best && !self.scene.is_course_compatible()
+    }
+
+    /// What a gathering ray brings back.
+    pub(super) fn gathered(&self, ray: &Ray, hit: &Hit) -> Rgb {
+        if hit.is_miss() {
+            return self.scene.environment_radiance(ray.direction, false);
+        }
+        self.scene.emitted(&self.scene.interaction(ray, hit), -ray.direction)
+    }
+}

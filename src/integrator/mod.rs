@@ -1,0 +1,20 @@
+//! Floor 6: what one path carries back to the camera.
+//!
+//! `path` holds the steps of a path, each a few lines; `reference` takes them for one path at a
+//! time and is the teaching text and the oracle; `wavefront` takes the same steps for a batch of
+//! paths, stage by stage. Both draw the same random numbers and give the same bits.
+//! `first_hit` answers the views that need no light. Nothing here knows threads, films or clocks.
+
+mod counts;
+mod direct;
+mod first_hit;
+mod path;
+mod reference;
+mod wavefront;
+
+pub use counts::PathCounts;
+pub use direct::DirectPlan;
+pub use first_hit::first_hit;
+pub use path::{Path, PathId, PathSettings, PathTracer};
+pub use reference::reference;
+pub use wavefront::{BATCH_SIZE, Wavefront};

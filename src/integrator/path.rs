@@ -1,0 +1,225 @@
+use glam::{Vec2, Vec3};
+
+use super::DirectPlan;
+use crate::bsdf::{Bsdf, Lobe};
+use crate::camera::RayCamera;
+use crate::color::Rgb;
+use crate::geometry::Hit;
+use crate::math::{Frame, Ray, offset_origin};
+use crate::sampling::{PathSampler, Slot, power_heuristic, uniform_disk};
+use crate::scene::{PreparedScene, SurfaceInteraction};
+use crate::settings::{MaxDepth, Mode, RenderSettings};
+
+/// Smallest probability with which Russian roulette lets a path live.
+const MIN_SURVIVAL: f32 = 0.05;
+
+/// The settings that a path depends on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PathSettings {
+    /// Estimator of direct light.
+    pub mode: Mode,
+    /// Light samples per light and vertex, at least 1.
+    pub light_samples: u32,
+    /// Largest number of bounces.
+    pub max_depth: MaxDepth,
+    /// Keep only the light of bounce `max_depth`.
+    pub only_last_bounce: bool,
+    /// Seed of all random numbers.
+    pub seed: u64,
+}
+
+impl From<&RenderSettings> for PathSettings {
+    fn from(settings: &RenderSettings) -> Self {
+        Self {
+            mode: settings.mode,
+            light_samples: settings.light_samples.max(1),
+            max_depth: settings.max_depth,
+            only_last_bounce: settings.only_last_bounce,
+            seed: settings.seed,
+        }
+    }
+}
+
+/// One path: pixel (x right, y down, in the whole picture) and sample number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PathId {
+    /// Pixel.
+    pub pixel: [u32; 2],
+    /// Sample number, from 0.
+    pub sample: u32,
+}
+
+/// How emission met by the next ray counts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum EmissionWeight {
+    /// Nothing else can find it: camera rays and delta lobes.
+    Full,
+    /// The direct light estimator of the last vertex has counted it.
+    None,
+    /// Shared with the light samples of the last vertex, from where the ray left with this
+    /// solid-angle density.
+    Shared { from: Vec3, scatter_pdf: f32 },
+}
+
+/// A path on its way.
+#[derive(Clone, Copy, Debug)]
+pub struct Path {
+    /// Its random numbers.
+    pub(super) sampler: PathSampler,
+    /// The ray to be traced next.
+    pub ray: Ray,
+    /// Product of bsdf · cos / pdf so far.
+    pub throughput: Rgb,
+    /// Radiance gathered so far.
+    pub radiance: Rgb,
+    /// Surfaces that scattered the path so far.
+    pub bounce: u32,
+    pub(super) emission_weight: EmissionWeight,
+}
+
+/// A surface point of a path, ready to scatter.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Vertex<'a> {
+    pub(super) surface: SurfaceInteraction,
+    pub(super) frame: Frame,
+    pub(super) wo: Vec3,
+    pub(super) bsdf: &'a Bsdf,
+}
+
+impl Vertex<'_> {
+    /// The world direction `wi` in the shading frame; `None` where geometric and shading normal
+    /// disagree about its side, so that no light leaks through the true surface (Veach 1997, 5.3).
+    pub(super) fn local(&self, wi: Vec3) -> Option<Vec3> {
+        let local = self.frame.to_local(wi);
+        (local.z * wi.dot(self.surface.geometric_normal) > 0.0).then_some(local)
+    }
+
+    /// Where a ray towards `direction` starts.
+    pub(super) fn origin(&self, direction: Vec3) -> Vec3 {
+        offset_origin(self.surface.point, self.surface.error, self.surface.geometric_normal, direction)
+    }
+}
+
+/// The steps of a path through one scene, camera and choice of settings.
+#[derive(Debug)]
+pub struct PathTracer<'a> {
+    /// The scene.
+    pub scene: &'a PreparedScene,
+    /// The camera.
+    pub camera: &'a RayCamera,
+    /// The settings.
+    pub settings: PathSettings,
+    /// The direct light samples of each vertex.
+    pub(super) plan: DirectPlan,
+}
+
+impl<'a> PathTracer<'a> {
+    /// The path tracer of `scene` seen by `camera`.
+    pub fn new(scene: &'a PreparedScene, camera: &'a RayCamera, settings: PathSettings) -> Self {
+        Self { scene, camera, settings, plan: DirectPlan::new(scene, &settings) }
+    }
+
+    /// The start of a path: its camera ray through a uniform point of the pixel (box filter).
+    pub fn start(&self, id: PathId) -> Path {
+        let sampler = PathSampler::new(self.settings.seed, id.pixel, id.sample);
+        let pixel = Vec2::new(id.pixel[0] as f32, id.pixel[1] as f32);
+        let position = pixel + sampler.get_2d(0, Slot::Pixel);
+        let ray = self.camera.generate_ray(position, || uniform_disk(sampler.get_2d(0, Slot::Lens)));
+        Path {
+            sampler,
+            ray,
+            throughput: Rgb::ONE,
+            radiance: Rgb::ZERO,
+            bounce: 0,
+            emission_weight: EmissionWeight::Full,
+        }
+    }
+
+    /// Takes what `path` met: adds emission; `None` when the path ends there.
+    pub(super) fn arrive(&self, path: &mut Path, hit: &Hit) -> Option<Vertex<'a>> {
+        if hit.is_miss() {
+            let radiance = self.scene.environment_radiance(path.ray.direction, path.bounce == 0);
+            self.add_emission(path, radiance, |from| {
+                self.scene.environment_pdf(from, path.ray.direction)
+            });
+            return None;
+        }
+        let surface = self.scene.interaction(&path.ray, hit);
+        let emitted = self.scene.emitted(&surface, -path.ray.direction);
+        self.add_emission(path, emitted, |from| self.scene.light_pdf(from, path.ray.direction, &surface, hit.t));
+        let bsdf = self.scene.bsdf(hit.primitive);
+        if path.bounce >= self.settings.max_depth.0 || bsdf.is_black() {
+            return None;
+        }
+        Some(vertex(surface, -path.ray.direction, bsdf))
+    }
+
+    fn add_emission(&self, path: &mut Path, emitted: Rgb, light_pdf: impl FnOnce(Vec3) -> f32) {
+        if emitted == Rgb::ZERO || !self.counts_depth(path.bounce) {
+            return;
+        }
+        let weight = match path.emission_weight {
+            EmissionWeight::None => return,
+            EmissionWeight::Full => 1.0,
+            EmissionWeight::Shared { from, scatter_pdf } => {
+                power_heuristic(scatter_pdf, self.settings.light_samples as f32 * light_pdf(from))
+            }
+        };
+        path.radiance += path.throughput * emitted * weight;
+    }
+
+    /// True when light after `depth` bounces is part of the picture.
+    pub(super) fn counts_depth(&self, depth: u32) -> bool {
+        !self.settings.only_last_bounce || depth == self.settings.max_depth.0
+    }
+
+    /// Sends `path` on from `vertex`; false when it ends there.
+    pub(super) fn scatter(&self, path: &mut Path, vertex: &Vertex<'_>) -> bool {
+        let (bounce, sampler) = (path.bounce, path.sampler);
+        let is_last = bounce + 1 >= self.settings.max_depth.0;
+        // After the last bounce only emission that no light sample finds is still of use.
+        if is_last && !vertex.bsdf.is_delta() && !self.shares_emission() {
+            return false;
+        }
+        let u_lobe = sampler.get_1d(bounce, Slot::Lobe);
+        let Some(sample) = vertex.bsdf.sample(vertex.wo, u_lobe, sampler.get_2d(bounce, Slot::Scatter)) else {
+            return false;
+        };
+        let direction = vertex.frame.to_world(sample.wi).normalize_or_zero();
+        if direction.dot(vertex.surface.geometric_normal) * sample.wi.z <= 0.0 {
+            return false;
+        }
+        path.throughput *= sample.weight();
+        path.emission_weight = match sample.lobe {
+            Lobe::Delta => EmissionWeight::Full,
+            _ if self.shares_emission() => {
+                EmissionWeight::Shared { from: vertex.surface.point, scatter_pdf: sample.pdf }
+            }
+            _ => EmissionWeight::None,
+        };
+        path.ray = Ray::new(vertex.origin(direction), direction);
+        path.bounce += 1;
+        // The first continuation is always taken, as in the course.
+        path.throughput.max_element() > 0.0 && (path.bounce < 2 || survives(path, sampler.get_1d(bounce, Slot::Roulette)))
+    }
+}
+
+fn vertex(mut surface: SurfaceInteraction, wo: Vec3, bsdf: &Bsdf) -> Vertex<'_> {
+    // Seen from the front of the true surface but the back of the interpolated one (or the
+    // reverse), near silhouettes of coarse meshes: shade the true surface.
+    if wo.dot(surface.geometric_normal) * wo.dot(surface.shading_normal) <= 0.0 {
+        surface.shading_normal = surface.geometric_normal;
+    }
+    let frame = Frame::from_normal(surface.shading_normal);
+    Vertex { surface, frame, wo: frame.to_local(wo), bsdf }
+}
+
+/// Russian roulette by throughput; survivors are divided by their probability, so the mean stays.
+fn survives(path: &mut Path, u: f32) -> bool {
+    let survival = path.throughput.max_element().clamp(MIN_SURVIVAL, 1.0);
+    if u >= survival {
+        return false;
+    }
+    path.throughput /= survival;
+    true
+}

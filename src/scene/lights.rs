@@ -1,0 +1,122 @@
+//! The light table of the runtime scene.
+
+use glam::DVec3;
+
+use super::emitters::EmittingRectangle;
+use super::{LightKind, Scene};
+use crate::geometry::Shapes;
+use crate::light::{
+    AreaDensity, AreaLight, AreaShape, DirectionalLight, EnvironmentLight, Light, LightSampler, PointLight, SpotLight,
+};
+use crate::math::Normalization;
+
+/// Radius of the sphere around the normalised scene, for the power of light from infinity.
+const SCENE_RADIUS: f32 = 1.733;
+
+/// Lights as they are collected.
+#[derive(Debug)]
+pub(super) struct LightTable {
+    pub(super) lights: Vec<Light>,
+    pub(super) sampled: Vec<u32>,
+    pub(super) environment: Option<u32>,
+    pub(super) course_compatible: bool,
+}
+
+impl LightTable {
+    pub(super) fn new(course_compatible: bool) -> Self {
+        Self { lights: Vec::new(), sampled: Vec::new(), environment: None, course_compatible }
+    }
+
+    /// A light that rays can meet. The course's program never samples those.
+    pub(super) fn add_surface(&mut self, light: Light) -> u32 {
+        let index = self.lights.len() as u32;
+        self.lights.push(light);
+        if !self.course_compatible {
+            self.sampled.push(index);
+        }
+        index
+    }
+
+    fn add_sampled(&mut self, light: Light) -> u32 {
+        let index = self.lights.len() as u32;
+        self.lights.push(light);
+        self.sampled.push(index);
+        index
+    }
+
+    /// The course's area light: sampled with its wrong density, never met.
+    pub(super) fn add_course_rectangle(
+        &mut self,
+        rectangle: &EmittingRectangle,
+        normalization: &Normalization,
+        shapes: &Shapes,
+    ) {
+        let edge = |e: DVec3| (e * normalization.scale).as_vec3();
+        let shape = AreaShape::Rectangle {
+            corner: normalization.point_to_scene(rectangle.corner),
+            edge_u: edge(rectangle.edge_u),
+            edge_v: edge(rectangle.edge_v),
+        };
+        // Light that falls off as 1/r depends on the unit of r: the file's.
+        let radiance = rectangle.radiance / normalization.scale as f32;
+        let light = AreaLight::new(shapes, shape, radiance, false).with_density(AreaDensity::Course);
+        self.add_sampled(Light::Area(light));
+    }
+
+    /// Chooses among all lights by power. Course-compatible scenes sample every light instead.
+    pub(super) fn sampler(&self, shapes: &Shapes) -> LightSampler {
+        if self.course_compatible {
+            return LightSampler::new(&[]);
+        }
+        let powers: Vec<f32> = self.lights.iter().map(|light| light.power(shapes, SCENE_RADIUS)).collect();
+        LightSampler::new(&powers)
+    }
+}
+
+/// Adds the lights of nodes and the environment.
+pub(super) fn light_nodes(
+    scene: &Scene,
+    course_compatible: bool,
+    normalization: &Normalization,
+    table: &mut LightTable,
+) {
+    // Irradiance I/d² must not depend on the unit of d.
+    let intensity_scale = (normalization.scale * normalization.scale) as f32;
+    for light in &scene.lights {
+        let place = light.world_from_light;
+        let position = normalization.point_to_scene(place.transform_point3(DVec3::ZERO));
+        let forward = place.transform_vector3(DVec3::NEG_Z);
+        let axis = forward.try_normalize().unwrap_or(DVec3::NEG_Y).as_vec3();
+        match light.kind {
+            LightKind::Area { .. } => {}
+            LightKind::Point { intensity } => {
+                let intensity = intensity * intensity_scale;
+                table.add_sampled(Light::Point(PointLight { position, intensity }));
+            }
+            LightKind::Spot { intensity, cone_angle, exponent } => {
+                table.add_sampled(Light::Spot(SpotLight {
+                    position,
+                    axis,
+                    intensity: intensity * intensity_scale,
+                    cos_half_angle: (cone_angle * 0.5).cos() as f32,
+                    exponent: exponent as f32,
+                }));
+            }
+            LightKind::Directional { irradiance } => {
+                let to_light = if course_compatible {
+                    // The course adds the node's translation to the direction.
+                    -(forward + place.transform_point3(DVec3::ZERO)).try_normalize().unwrap_or(DVec3::NEG_Y).as_vec3()
+                } else {
+                    -axis
+                };
+                table.add_sampled(Light::Directional(DirectionalLight { to_light, irradiance }));
+            }
+        }
+    }
+    let environment = &scene.environment;
+    let map = environment.map.as_ref().map(|map| map.image.clone());
+    if map.is_some() || (environment.ambient + environment.sky).max_element() > 0.0 {
+        let light = EnvironmentLight::new(environment.sky, environment.ambient, map);
+        table.environment = Some(table.add_sampled(Light::Environment(light)));
+    }
+}

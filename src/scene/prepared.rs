@@ -1,0 +1,193 @@
+use glam::Vec3;
+
+use super::SurfaceInteraction;
+use crate::bsdf::Bsdf;
+use crate::color::Rgb;
+use crate::geometry::{Aggregate, Shapes};
+use crate::light::{Light, LightHit, LightSampler};
+use crate::math::Normalization;
+
+/// Index of the flat triangles in [`PreparedScene::smooth`].
+pub(super) const FLAT: u32 = u32::MAX;
+/// Light index of surfaces that do not emit.
+pub(super) const DARK: u32 = u32::MAX;
+
+/// What a primitive belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Owner {
+    pub(super) material: u32,
+    pub(super) light: u32,
+    pub(super) instance: u32,
+}
+
+/// A material at run time.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct PreparedMaterial {
+    pub(super) name: String,
+    pub(super) bsdf: Bsdf,
+}
+
+/// A scene made ready for tracing: immutable, shared by `Arc`. All positions are in tracing space,
+/// see [`Normalization`].
+#[derive(Debug)]
+pub struct PreparedScene {
+    pub(super) normalization: Normalization,
+    pub(super) aggregate: Aggregate,
+    /// One owner for each run of primitives, and the first primitive of each run.
+    pub(super) owners: Vec<(u32, Owner)>,
+    pub(super) owner_of: Vec<u32>,
+    /// For each triangle its place in `corner_normals`, or [`FLAT`]; empty when all are flat.
+    pub(super) smooth: Vec<u32>,
+    pub(super) corner_normals: Vec<[Vec3; 3]>,
+    pub(super) materials: Vec<PreparedMaterial>,
+    pub(super) instance_names: Vec<String>,
+    pub(super) lights: Vec<Light>,
+    /// Lights that are sampled; others are only met.
+    pub(super) sampled: Vec<u32>,
+    pub(super) sampler: LightSampler,
+    pub(super) environment: Option<u32>,
+    pub(super) course_compatible: bool,
+    pub(super) notes: Vec<String>,
+}
+
+impl PreparedScene {
+    /// The map between file coordinates and tracing space.
+    pub fn normalization(&self) -> &Normalization {
+        &self.normalization
+    }
+
+    /// What rays are traced against.
+    pub fn aggregate(&self) -> &Aggregate {
+        &self.aggregate
+    }
+
+    /// The shapes.
+    pub fn shapes(&self) -> &Shapes {
+        self.aggregate.shapes()
+    }
+
+    /// Sentences on what the step from description to runtime decided, for the import report.
+    pub fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
+    /// True when the course program's picture is reproduced with its errors.
+    pub fn is_course_compatible(&self) -> bool {
+        self.course_compatible
+    }
+
+    fn owner(&self, primitive: u32) -> &Owner {
+        &self.owners[self.owner_of[primitive as usize] as usize].1
+    }
+
+    /// Unit normals at the corners of triangle `primitive`; `None` when it is flat.
+    pub(super) fn corner_normals(&self, primitive: u32) -> Option<[Vec3; 3]> {
+        let index = *self.smooth.get(primitive as usize)?;
+        (index != FLAT).then(|| self.corner_normals[index as usize])
+    }
+
+    /// The material of `primitive`.
+    pub fn bsdf(&self, primitive: u32) -> &Bsdf {
+        &self.materials[self.owner(primitive).material as usize].bsdf
+    }
+
+    /// Reflectance or tint of `primitive`, the colour of an emitter's emission scaled to at most 1.
+    pub fn albedo(&self, primitive: u32) -> Rgb {
+        let albedo = self.bsdf(primitive).albedo();
+        match self.light_of(primitive) {
+            Some(light) if albedo == Rgb::ZERO => {
+                let hit = LightHit { point: Vec3::ZERO, normal: Vec3::Z, distance: 1.0, primitive };
+                let emitted = self.light(light).radiance_at(hit, Vec3::NEG_Z);
+                emitted / emitted.max_element().max(1.0)
+            }
+            _ => albedo,
+        }
+    }
+
+    /// Name of the material of `primitive`.
+    pub fn material_name(&self, primitive: u32) -> &str {
+        &self.materials[self.owner(primitive).material as usize].name
+    }
+
+    /// Name of the object that `primitive` belongs to.
+    pub fn object_name(&self, primitive: u32) -> &str {
+        &self.instance_names[self.owner(primitive).instance as usize]
+    }
+
+    fn light_of(&self, primitive: u32) -> Option<u32> {
+        let light = self.owner(primitive).light;
+        (light != DARK).then_some(light)
+    }
+
+    /// Radiance that the surface sends along `wo`.
+    pub fn emitted(&self, surface: &SurfaceInteraction, wo: Vec3) -> Rgb {
+        let Some(light) = self.light_of(surface.primitive) else { return Rgb::ZERO };
+        self.light(light).radiance_at(light_hit(surface, 0.0), -wo)
+    }
+
+    /// Radiance from infinity along a ray in `direction` that met nothing. Camera rays do not see
+    /// the ambient part.
+    pub fn environment_radiance(&self, direction: Vec3, is_camera_ray: bool) -> Rgb {
+        self.environment
+            .map_or(Rgb::ZERO, |light| self.light(light).radiance_from_infinity(direction, is_camera_ray))
+    }
+
+    /// Solid-angle density with which [`Self::choose_light`] and light sampling from `from` make
+    /// the unit `direction` in which `surface` lies at `distance`.
+    pub fn light_pdf(&self, from: Vec3, direction: Vec3, surface: &SurfaceInteraction, distance: f32) -> f32 {
+        let Some(light) = self.light_of(surface.primitive) else { return 0.0 };
+        let pmf = self.light_pmf(light);
+        if pmf == 0.0 {
+            return 0.0;
+        }
+        pmf * self.light(light).pdf(self.shapes(), from, direction, light_hit(surface, distance))
+    }
+
+    /// The same for the environment.
+    pub fn environment_pdf(&self, from: Vec3, direction: Vec3) -> f32 {
+        let Some(light) = self.environment else { return 0.0 };
+        self.light_pmf(light) * self.light(light).pdf(self.shapes(), from, direction, LightHit::INFINITE)
+    }
+
+    /// Light number `light`.
+    pub fn light(&self, light: u32) -> &Light {
+        &self.lights[light as usize]
+    }
+
+    /// The number of lights.
+    pub fn light_count(&self) -> usize {
+        self.lights.len()
+    }
+
+    /// The lights that are sampled.
+    pub fn sampled_lights(&self) -> &[u32] {
+        &self.sampled
+    }
+
+    /// A light chosen in proportion to its power by `u` in [0, 1), and the probability of that.
+    pub fn choose_light(&self, u: f32) -> Option<(u32, f32)> {
+        let (index, pmf) = self.sampler.sample(u);
+        (pmf > 0.0).then(|| (self.sampled[index], pmf))
+    }
+
+    /// The probability with which [`Self::choose_light`] gives `light`.
+    pub fn light_pmf(&self, light: u32) -> f32 {
+        // The sampled lights are all lights, or (course-compatible) never chosen by power.
+        self.sampler.pmf(light as usize)
+    }
+
+    /// The number of lights that uniform hemisphere directions stand in for, at least 1.
+    pub fn hemisphere_light_count(&self) -> u32 {
+        let counts = |light: &&u32| self.course_compatible || !self.light(**light).is_delta();
+        (self.sampled.iter().filter(counts).count() as u32).max(1)
+    }
+}
+
+fn light_hit(surface: &SurfaceInteraction, distance: f32) -> LightHit {
+    LightHit {
+        point: surface.point,
+        normal: surface.geometric_normal,
+        distance,
+        primitive: surface.primitive,
+    }
+}

@@ -1,0 +1,64 @@
+use std::sync::Arc;
+
+use super::RenderJob;
+
+/// How much of a running render a new job leaves standing, from nothing lost to all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Change {
+    /// The same picture.
+    None,
+    /// Another view, stop rule or number of threads: the film goes on.
+    Continue,
+    /// Another picture of the same runtime scene: a new film.
+    Film,
+    /// Another runtime scene.
+    Scene,
+}
+
+impl Change {
+    pub(super) fn between(old: &RenderJob, new: &RenderJob) -> Self {
+        if old == new {
+            return Self::None;
+        }
+        let (a, b) = (&old.settings, &new.settings);
+        if !Arc::ptr_eq(&old.scene, &new.scene) || a.bvh != b.bvh || a.course_compatible != b.course_compatible {
+            return Self::Scene;
+        }
+        // The parts of the settings that do not touch the film are made equal; what still differs does.
+        let mut film_settings = b.clone();
+        film_settings.view = a.view;
+        film_settings.stop = a.stop;
+        film_settings.threads = a.threads;
+        if old.camera != new.camera || *a != film_settings { Self::Film } else { Self::Continue }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera::Camera;
+    use crate::scene::Scene;
+    use crate::settings::{RenderSettings, View};
+
+    #[test]
+    fn only_what_touches_the_film_drops_it() {
+        let job = RenderJob {
+            scene: Arc::new(Scene::default()),
+            camera: Camera::default(),
+            settings: RenderSettings::default(),
+        };
+        let with = |edit: fn(&mut RenderJob)| {
+            let mut new = job.clone();
+            edit(&mut new);
+            Change::between(&job, &new)
+        };
+        assert_eq!(with(|_| ()), Change::None);
+        assert_eq!(with(|j| j.settings.view = View::Noise), Change::Continue);
+        assert_eq!(with(|j| j.settings.stop.samples_per_pixel = Some(9)), Change::Continue);
+        assert_eq!(with(|j| j.settings.threads = 3), Change::Continue);
+        assert_eq!(with(|j| j.settings.seed = 1), Change::Film);
+        assert_eq!(with(|j| j.camera.lens_radius = 0.1), Change::Film);
+        assert_eq!(with(|j| j.settings.bvh.leaf_size = 9), Change::Scene);
+        assert_eq!(with(|j| j.scene = Arc::new(Scene::default())), Change::Scene);
+    }
+}

@@ -1,0 +1,173 @@
+use std::time::Instant;
+
+use super::super::adaptive::close_pixels;
+use super::super::pace::{Progress, eta_seconds, next_target, preview_step};
+use super::super::preview::Preview;
+use super::super::publish::Caption;
+use super::super::workers::Workers;
+use super::super::{RenderJob, SessionStatus, Snapshot, StopReason};
+use crate::camera::RayCamera;
+use crate::film::{Film, FilmSummary};
+use crate::integrator::{PathCounts, PathSettings, PathTracer};
+use crate::scene::PreparedScene;
+use crate::session::first_hit_pass::first_hit_pass;
+use crate::session::pass::render_pass;
+
+/// One picture in the making: a job, its runtime scene, and the film so far.
+#[derive(Debug)]
+pub(super) struct Picture {
+    pub(super) job: RenderJob,
+    pub(super) generation: u64,
+    camera: RayCamera,
+    film: Film,
+    summary: FilmSummary,
+    backdrop: Option<Preview>,
+    seconds: f64,
+    counts: PathCounts,
+    /// Samples that every open pixel has.
+    done: u32,
+    last_pass: Option<(u32, f64)>,
+    /// Seconds spent on the pass that is not complete yet.
+    pass_seconds: f64,
+    all_closed: bool,
+    /// The view of the first hit that was shown last is still right.
+    first_hit_is_done: bool,
+}
+
+impl Picture {
+    pub(super) fn new(job: RenderJob, generation: u64, scene: &PreparedScene) -> Self {
+        let settings = &job.settings;
+        let camera = RayCamera::new(&job.camera, settings.width, settings.height, scene.normalization());
+        let film = Film::new(settings.active_region());
+        let summary = film.summary();
+        Self {
+            job,
+            generation,
+            camera,
+            film,
+            summary,
+            backdrop: None,
+            seconds: 0.0,
+            counts: PathCounts::default(),
+            done: 0,
+            last_pass: None,
+            pass_seconds: 0.0,
+            all_closed: false,
+            first_hit_is_done: false,
+        }
+    }
+
+    /// Takes another view, stop rule or number of threads; the film stays.
+    pub(super) fn go_on_with(&mut self, job: RenderJob) {
+        self.first_hit_is_done &= job.settings.view == self.job.settings.view;
+        self.job = job;
+    }
+
+    fn size(&self) -> [u32; 2] {
+        [self.job.settings.width, self.job.settings.height]
+    }
+
+    fn caption(&self) -> Caption<'_> {
+        Caption { job: &self.job, generation: self.generation, seconds: self.seconds }
+    }
+
+    /// The coarse first look, and the paths per second that it measured.
+    pub(super) fn preview(&mut self, workers: &Workers, scene: &PreparedScene, rate: f64) -> (Snapshot, f64) {
+        let size = self.size();
+        let step = preview_step(f64::from(size[0]) * f64::from(size[1]), rate);
+        let started = Instant::now();
+        let view = self.job.settings.view;
+        let preview = if view.is_first_hit() {
+            Preview::render_first_hit(workers, scene, &self.camera, view, (size, step))
+        } else {
+            let settings = PathSettings { light_samples: 1, ..PathSettings::from(&self.job.settings) };
+            Preview::render(workers, &PathTracer::new(scene, &self.camera, settings), size, step).0
+        };
+        let measured = preview.pixels.len() as f64 / started.elapsed().as_secs_f64().max(1e-6);
+        let snapshot = self.caption().plain((preview.width, preview.height), preview.pixels.clone(), true);
+        if !view.is_first_hit() {
+            self.backdrop = Some(preview);
+        }
+        (snapshot, measured)
+    }
+
+    /// Why nothing more is to be done, if so.
+    pub(super) fn stop_reason(&self) -> Option<StopReason> {
+        let settings = &self.job.settings;
+        if settings.view.is_first_hit() {
+            return self.first_hit_is_done.then_some(StopReason::FirstHit);
+        }
+        if self.all_closed {
+            return Some(StopReason::Converged);
+        }
+        let stop = &settings.stop;
+        if stop.samples_per_pixel.is_some_and(|n| self.done >= n) {
+            return Some(StopReason::Samples);
+        }
+        if stop.seconds.is_some_and(|limit| self.seconds >= limit) {
+            return Some(StopReason::Seconds);
+        }
+        let is_precise = |aim| self.summary.relative_error.is_some_and(|error| error <= aim);
+        // Two samples can agree by chance; the estimate means something from a few more on.
+        (self.done >= 8 && stop.relative_error.is_some_and(is_precise)).then_some(StopReason::Error)
+    }
+
+    /// Takes samples until the end of the pass or until `stop`.
+    pub(super) fn advance(&mut self, workers: &Workers, scene: &PreparedScene, stop: &(dyn Fn() -> bool + Sync)) {
+        let started = Instant::now();
+        let settings = &self.job.settings;
+        let tracer = PathTracer::new(scene, &self.camera, PathSettings::from(settings));
+        let target = next_target(settings, self.done, self.last_pass);
+        let limit = settings.stop.seconds.map(|limit| limit - self.seconds);
+        let is_over = || stop() || limit.is_some_and(|limit| started.elapsed().as_secs_f64() >= limit);
+        let (counts, is_complete) =
+            render_pass(workers, &tracer, settings.integrator, &mut self.film, target, &is_over);
+        self.counts += counts;
+        let elapsed = started.elapsed().as_secs_f64();
+        self.seconds += elapsed;
+        self.pass_seconds += elapsed;
+        if is_complete {
+            self.summary = self.film.summary();
+            self.last_pass = Some((target - self.done, std::mem::take(&mut self.pass_seconds)));
+            self.done = target;
+            if let Some(adaptive) = settings.adaptive.filter(|a| target % a.batch.max(1) == 0) {
+                self.all_closed = close_pixels(&mut self.film, &adaptive, settings.mode);
+            }
+        }
+    }
+
+    /// The whole view of the first hit, unless `stop` cut it short.
+    pub(super) fn first_hit(
+        &mut self,
+        workers: &Workers,
+        scene: &PreparedScene,
+        stop: &(dyn Fn() -> bool + Sync),
+    ) -> Option<Snapshot> {
+        let size = self.size();
+        let pixels = first_hit_pass(workers, scene, &self.camera, (self.job.settings.view, size), stop)?;
+        self.first_hit_is_done = true;
+        Some(self.caption().plain((size[0] as usize, size[1] as usize), pixels, false))
+    }
+
+    /// The picture so far.
+    pub(super) fn snapshot(&mut self, workers: &Workers) -> Snapshot {
+        self.summary = self.film.summary();
+        self.caption().film(workers, &self.film, &self.summary, self.backdrop.as_ref())
+    }
+
+    /// Writes what is known about this picture.
+    pub(super) fn describe(&self, status: &mut SessionStatus) {
+        status.samples_mean = self.summary.samples as f64 / self.summary.pixels.max(1) as f64;
+        status.samples_target = self.job.settings.stop.samples_per_pixel;
+        status.seconds = self.seconds;
+        status.relative_error = self.summary.relative_error;
+        status.counts = self.counts;
+        status.samples_per_second = self.counts.camera_rays as f64 / self.seconds.max(1e-9);
+        let progress = Progress {
+            seconds: self.seconds,
+            samples_mean: status.samples_mean,
+            relative_error: self.summary.relative_error,
+        };
+        status.eta_seconds = eta_seconds(&self.job.settings, &progress);
+    }
+}

@@ -1,0 +1,213 @@
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::time::{Duration, Instant};
+
+use super::picture::Picture;
+use super::{Shared, lock};
+use crate::scene::{PrepareSettings, PreparedScene, prepare};
+use crate::session::change::Change;
+use crate::session::workers::{Workers, lower_priority};
+use crate::session::{RenderJob, SessionState};
+
+/// Shortest time between two snapshots of a picture being refined, in a window and headless.
+const PUBLISH_EVERY: [Duration; 2] = [Duration::from_millis(1000), Duration::from_millis(33)];
+/// Snapshots may cost one part in this many of the time.
+const PUBLISH_SHARE: u32 = 12;
+/// Paths per second assumed before anything was measured.
+const FIRST_RATE: f64 = 200_000.0;
+
+/// What the session's thread remembers from one turn of its loop to the next.
+pub(super) struct Turn<'a> {
+    shared: &'a Shared,
+    workers: Workers,
+    scene: Option<Arc<PreparedScene>>,
+    picture: Option<Picture>,
+    generation: u64,
+    /// Paths per second, measured.
+    rate: f64,
+    published: Instant,
+    publish_cost: Duration,
+    /// The picture has samples that no snapshot shows.
+    has_news: bool,
+}
+
+impl<'a> Turn<'a> {
+    pub(super) fn new(shared: &'a Shared) -> Self {
+        if shared.options.interactive {
+            lower_priority();
+        }
+        Self {
+            shared,
+            workers: Workers::new(1, shared.options.interactive),
+            scene: None,
+            picture: None,
+            generation: 0,
+            rate: FIRST_RATE,
+            published: Instant::now(),
+            publish_cost: Duration::ZERO,
+            has_news: false,
+        }
+    }
+
+    /// One look at the wishes and one step of work; false when the session ends.
+    pub(super) fn take(&mut self) -> bool {
+        let seen = self.shared.interrupts.load(Ordering::Relaxed);
+        let (job, restart) = {
+            let mut wish = lock(&self.shared.wish);
+            if wish.quit {
+                return false;
+            }
+            (wish.job.clone(), std::mem::take(&mut wish.restart))
+        };
+        let Some(job) = job else { return self.wait(seen) };
+        if self.accept(job, restart, seen).is_break() {
+            return true;
+        }
+        let stop_reason = self.picture.as_ref().and_then(Picture::stop_reason);
+        if let Some(reason) = stop_reason {
+            self.publish_news();
+            self.shared.set_state(SessionState::Finished(reason));
+            return self.wait(seen);
+        }
+        if self.shared.is_paused() {
+            self.publish_news();
+            self.shared.set_state(SessionState::Paused);
+            return self.wait(seen);
+        }
+        self.work(seen);
+        true
+    }
+
+    /// Sleeps until somebody wants something; true.
+    fn wait(&self, seen: u64) -> bool {
+        let mut wish = lock(&self.shared.wish);
+        while self.shared.interrupts.load(Ordering::Relaxed) == seen {
+            wish = self.shared.changed.wait(wish).unwrap_or_else(std::sync::PoisonError::into_inner);
+        }
+        true
+    }
+
+    /// Makes `job` the current picture, keeping what can be kept; breaks when interrupted.
+    fn accept(&mut self, job: RenderJob, restart: bool, seen: u64) -> ControlFlow<()> {
+        let change = match &self.picture {
+            None => Change::Scene,
+            Some(picture) => match Change::between(&picture.job, &job) {
+                Change::None | Change::Continue if restart => Change::Film,
+                change => change,
+            },
+        };
+        if change == Change::None {
+            return ControlFlow::Continue(());
+        }
+        let threads = job.settings.thread_count();
+        if self.workers.threads() != threads {
+            self.workers = self.workers.resized(threads);
+        }
+        if change == Change::Scene {
+            self.prepare(&job, seen)?;
+        }
+        match &mut self.picture {
+            Some(picture) if change == Change::Continue => {
+                picture.go_on_with(job);
+                self.has_news = true;
+                self.published -= PUBLISH_EVERY[0];
+                if picture.job.settings.view.is_first_hit() && picture.stop_reason().is_none() {
+                    self.show_preview();
+                }
+            }
+            _ => self.start(job),
+        }
+        ControlFlow::Continue(())
+    }
+
+    /// A new film, and its coarse first look.
+    fn start(&mut self, job: RenderJob) {
+        let Some(scene) = &self.scene else { return };
+        self.generation += 1;
+        self.picture = Some(Picture::new(job, self.generation, scene));
+        self.has_news = false;
+        self.shared.update_status(|status| {
+            status.eta_seconds = None;
+            status.relative_error = None;
+        });
+        if self.shared.options.interactive {
+            self.show_preview();
+        }
+    }
+
+    fn show_preview(&mut self) {
+        let (Some(scene), Some(picture)) = (&self.scene, &mut self.picture) else { return };
+        let (snapshot, measured) = picture.preview(&self.workers, scene, self.rate);
+        // Previews differ in what they see; half of the old figure stays.
+        self.rate = 0.5 * (self.rate + measured);
+        self.shared.publish(snapshot);
+        self.published = Instant::now();
+    }
+
+    fn prepare(&mut self, job: &RenderJob, seen: u64) -> ControlFlow<()> {
+        let shared = self.shared;
+        let progress = |stage, fraction| {
+            shared.set_state(SessionState::Preparing { stage, fraction });
+            if shared.interrupts.load(Ordering::Relaxed) == seen {
+                ControlFlow::Continue(())
+            } else {
+                ControlFlow::Break(())
+            }
+        };
+        let settings = PrepareSettings {
+            bvh: job.settings.bvh,
+            course_compatible: job.settings.course_compatible,
+        };
+        let started = Instant::now();
+        let prepared = self.workers.install(|| prepare(&job.scene, &settings, &progress));
+        let Some(prepared) = prepared else { return ControlFlow::Break(()) };
+        let prepared = Arc::new(prepared);
+        *lock(&shared.prepared) = Some(Arc::clone(&prepared));
+        self.scene = Some(prepared);
+        self.rate = FIRST_RATE;
+        shared.update_status(|status| {
+            status.build_seconds = started.elapsed().as_secs_f64();
+            status.message = None;
+        });
+        ControlFlow::Continue(())
+    }
+
+    /// Some milliseconds to a fraction of a second of rendering.
+    fn work(&mut self, seen: u64) {
+        let (Some(scene), Some(picture)) = (&self.scene, &mut self.picture) else { return };
+        self.shared.set_state(SessionState::Rendering);
+        let shared = self.shared;
+        let is_interrupted = || shared.interrupts.load(Ordering::Relaxed) != seen;
+        if picture.job.settings.view.is_first_hit() {
+            if let Some(snapshot) = picture.first_hit(&self.workers, scene, &is_interrupted) {
+                shared.publish(snapshot);
+                self.has_news = false;
+            }
+            return;
+        }
+        let every = PUBLISH_EVERY[usize::from(shared.options.interactive)].max(self.publish_cost * PUBLISH_SHARE);
+        let due = self.published + every;
+        // Long passes are cut where the next snapshot is due; the film stays whole.
+        picture.advance(&self.workers, scene, &|| is_interrupted() || Instant::now() >= due);
+        shared.update_status(|status| picture.describe(status));
+        self.has_news = true;
+        if Instant::now() >= due && !is_interrupted() {
+            self.publish_news();
+        }
+    }
+
+    fn publish_news(&mut self) {
+        let Some(picture) = self.picture.as_mut().filter(|_| self.has_news) else { return };
+        if picture.job.settings.view.is_first_hit() {
+            return;
+        }
+        let started = Instant::now();
+        let snapshot = picture.snapshot(&self.workers);
+        self.shared.update_status(|status| picture.describe(status));
+        self.shared.publish(snapshot);
+        self.published = Instant::now();
+        self.publish_cost = self.published - started;
+        self.has_news = false;
+    }
+}

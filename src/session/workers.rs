@@ -1,0 +1,92 @@
+use std::sync::Mutex;
+
+use rayon::ThreadPool;
+
+use crate::color::Rgb;
+use crate::integrator::{BATCH_SIZE, PathCounts, PathId, PathTracer, Wavefront, reference};
+use crate::settings::IntegratorKind;
+
+/// Priority of the workers of a window (nice value): they have the whole machine while the window
+/// rests, and never keep it from answering.
+const BACKGROUND_NICE: i32 = 10;
+
+/// A pool of named threads, each with the arrays of its integrator.
+#[derive(Debug)]
+pub(super) struct Workers {
+    pool: ThreadPool,
+    arrays: Vec<Mutex<WorkerArrays>>,
+    is_background: bool,
+}
+
+/// What one thread keeps from batch to batch.
+#[derive(Debug, Default)]
+pub(super) struct WorkerArrays {
+    wavefront: Wavefront,
+    pub(super) ids: Vec<PathId>,
+    pub(super) radiance: Vec<Rgb>,
+}
+
+impl Workers {
+    pub(super) fn new(threads: usize, is_background: bool) -> Self {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .thread_name(|i| format!("softbox-worker-{i}"))
+            .start_handler(move |_| {
+                if is_background {
+                    lower_priority();
+                }
+            })
+            .build()
+            .expect("the system refuses the worker threads");
+        let arrays = (0..pool.current_num_threads()).map(|_| Mutex::default()).collect();
+        Self { pool, arrays, is_background }
+    }
+
+    pub(super) fn threads(&self) -> usize {
+        self.pool.current_num_threads()
+    }
+
+    /// The same kind of pool with another number of threads.
+    pub(super) fn resized(&self, threads: usize) -> Self {
+        Self::new(threads, self.is_background)
+    }
+
+    pub(super) fn install<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
+        self.pool.install(work)
+    }
+
+    /// Runs `work` with the arrays of the calling worker; only from inside [`Self::install`].
+    pub(super) fn with_arrays<R>(&self, work: impl FnOnce(&mut WorkerArrays) -> R) -> R {
+        let index = rayon::current_thread_index().unwrap_or(0);
+        // Poisoned only by a panic, after which the arrays are still plain memory.
+        let mut arrays = self.arrays[index].lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        work(&mut arrays)
+    }
+}
+
+impl WorkerArrays {
+    /// Fills `self.radiance` with the radiance of `self.ids`, at most [`BATCH_SIZE`] paths.
+    pub(super) fn trace(&mut self, tracer: &PathTracer<'_>, integrator: IntegratorKind, counts: &mut PathCounts) {
+        debug_assert!(self.ids.len() <= BATCH_SIZE);
+        self.radiance.clear();
+        match integrator {
+            IntegratorKind::Reference => {
+                self.radiance.extend(self.ids.iter().map(|&id| reference(tracer, id, counts)));
+            }
+            IntegratorKind::Wavefront => {
+                self.radiance.resize(self.ids.len(), Rgb::ZERO);
+                self.wavefront.trace(tracer, &self.ids, &mut self.radiance, counts);
+            }
+        }
+    }
+}
+
+#[cfg(target_os = "linux")]
+pub(super) fn lower_priority() {
+    let thread = rustix::thread::gettid();
+    // Refused at worst; then the workers run at normal priority.
+    drop(rustix::process::setpriority_process(Some(thread), BACKGROUND_NICE));
+}
+
+#[cfg(not(target_os = "linux"))]
+pub(super) fn lower_priority() {}
