@@ -46,7 +46,7 @@ pub fn cosine_hemisphere_pdf(cos_theta: f32) -> f32 {
 }
 
 /// Barycentric weights of the second and third vertex of a point evenly spread over a triangle; the
-/// weight of the first, `1 − b1 − b2`, is above 0.
+/// weight of the first is `1 − b1 − b2`; none is negative.
 ///
 /// Heitz 2019, "A Low-Distortion Map Between Triangle and Square".
 pub fn uniform_triangle(u: Vec2) -> (f32, f32) {
@@ -135,7 +135,7 @@ mod tests {
             );
             assert!(uniform_disk(u).length() <= 1.0, "{u}");
             let (b1, b2) = uniform_triangle(u);
-            assert!(b1 >= 0.0 && b2 >= 0.0 && 1.0 - b1 - b2 > 0.0, "{u}");
+            assert!(b1 >= 0.0 && b2 >= 0.0 && 1.0 - b1 - b2 >= 0.0, "{u}");
             for width in [1e-12, 1e-6, 0.3, 1.0, 2.0] {
                 let w = uniform_cone(u, width);
                 assert!(is_unit(w) && w.z >= 1.0 - width - 1e-7, "{u} {width}");
