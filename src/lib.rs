@@ -1,9 +1,11 @@
 //! softbox: a progressive path tracer for the CPU, without a window.
 
+pub mod bsdf;
 pub mod bvh;
 pub mod color;
 pub mod geometry;
 pub mod image;
+pub mod light;
 pub mod math;
 pub mod sampling;
 pub mod scene;
