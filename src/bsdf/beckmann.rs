@@ -46,8 +46,8 @@ impl Beckmann {
     pub(super) fn lambda(self, w: Vec3) -> f32 {
         let sin = w.x.hypot(w.y);
         let a = w.z / (self.alpha * sin);
-        // Below the smallest f32 of interest; also catches the normal itself, where a is infinite.
-        if !(a < 9.0) {
+        // Nothing left in f32; the normal itself, where a is infinite, is among these.
+        if a >= 9.0 {
             return 0.0;
         }
         let over_a = 0.5 * FRAC_2_SQRT_PI as f32 / a;

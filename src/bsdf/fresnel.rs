@@ -16,7 +16,7 @@ pub(super) struct Boundary {
 pub(super) fn dielectric(cos_incident: f32, eta: f32) -> Boundary {
     // η²cos²t; written so that η = 1 gives back the incident cosine without cancellation.
     let scaled2 = (eta - 1.0) * (eta + 1.0) + cos_incident * cos_incident;
-    if !(scaled2 > 0.0) {
+    if scaled2 <= 0.0 {
         return Boundary {
             reflected: 1.0,
             cos_transmitted: 0.0,
@@ -58,7 +58,7 @@ fn conductor_channel(cos: f32, eta: f32, k: f32) -> f32 {
         0.0
     };
     let (sum_s, cross_s) = (modulus + cos2, 2.0 * a * cos);
-    if !(sum_s + cross_s > 0.0) {
+    if sum_s + cross_s <= 0.0 {
         return 1.0;
     }
     let perpendicular = (sum_s - cross_s) / (sum_s + cross_s);

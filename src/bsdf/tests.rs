@@ -85,10 +85,8 @@ fn nothing_reflects_more_than_it_receives() {
             }
             let albedo = sum / f64::from(n).powi(2);
             assert!(albedo <= 1.0 + 1e-4, "{alpha} {cos}: {albedo}");
-            assert!(
-                albedo > 0.4 && (alpha > 0.01 || albedo > 0.97),
-                "{alpha} {cos}: {albedo}"
-            );
+            let kept = if alpha < 0.2 && cos >= 0.1 { 0.9 } else { 0.3 };
+            assert!(albedo > kept, "{alpha} {cos}: {albedo}");
         }
     }
 }

@@ -5,7 +5,7 @@
 /// 0..=1, and 0 when `pdf_a` is 0. Veach and Guibas 1995, "Optimally Combining Sampling Techniques
 /// for Monte Carlo Rendering", equation 16 with β = 2.
 pub fn power_heuristic(pdf_a: f32, pdf_b: f32) -> f32 {
-    if !(pdf_a > 0.0) {
+    if pdf_a.is_nan() || pdf_a <= 0.0 {
         return 0.0;
     }
     if pdf_a.is_infinite() {
