@@ -1,5 +1,6 @@
 //! softbox: a progressive path tracer for the CPU, without a window.
 
+pub mod bsdf;
 pub mod bvh;
 pub mod camera;
 pub mod color;
@@ -7,6 +8,7 @@ pub mod film;
 pub mod geometry;
 pub mod image;
 pub mod integrator;
+pub mod light;
 pub mod math;
 pub mod sampling;
 pub mod scene;

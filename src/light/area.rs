@@ -1,0 +1,187 @@
+use std::f32::consts::PI;
+
+use glam::{Vec2, Vec3};
+
+use super::{LightHit, LightSample, direction_to, usable_pdf};
+use crate::color::{Rgb, luminance};
+use crate::geometry::Shapes;
+use crate::sampling::{Distribution1d, uniform_triangle};
+
+/// Where an area light is.
+#[derive(Clone, Debug, PartialEq)]
+pub enum AreaShape {
+    /// Triangles of the scene; the front is the side from which they are counter-clockwise.
+    Triangles {
+        /// Primitive ids.
+        primitives: Vec<u32>,
+    },
+    /// A parallelogram that rays do not meet; the front is the side of `edge_u` × `edge_v`.
+    Rectangle {
+        /// One corner.
+        corner: Vec3,
+        /// From the corner to the next.
+        edge_u: Vec3,
+        /// From the corner to the one before.
+        edge_v: Vec3,
+    },
+}
+
+/// How the density over the area becomes one over directions.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum AreaDensity {
+    /// r² / (A cos θ).
+    #[default]
+    Correct,
+    /// r / (A cos θ), wrong, as in the course's program: its light falls off as 1/r. Only for
+    /// reproducing its pictures.
+    Course,
+}
+
+/// A flat emitter of constant radiance.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AreaLight {
+    shape: AreaShape,
+    radiance: Rgb,
+    two_sided: bool,
+    density: AreaDensity,
+    area: f32,
+    /// Chooses among triangles by area; nothing when the whole area is zero.
+    by_area: Option<Distribution1d>,
+}
+
+impl AreaLight {
+    /// A light of the given shape that emits `radiance` from its front, or from both sides.
+    ///
+    /// The ids of [`AreaShape::Triangles`] must be of triangles of `shapes`. Degenerate triangles
+    /// emit nothing.
+    pub fn new(shapes: &Shapes, shape: AreaShape, radiance: Rgb, two_sided: bool) -> Self {
+        let areas: Vec<f32> = match &shape {
+            AreaShape::Triangles { primitives } => primitives
+                .iter()
+                .map(|&id| triangle_area(shapes.vertices(id as usize)))
+                .collect(),
+            AreaShape::Rectangle { edge_u, edge_v, .. } => vec![edge_u.cross(*edge_v).length()],
+        };
+        let usable = areas.iter().filter(|area| area.is_finite());
+        Self {
+            shape,
+            radiance,
+            two_sided,
+            density: AreaDensity::Correct,
+            area: usable.map(|&area| f64::from(area)).sum::<f64>() as f32,
+            by_area: Distribution1d::new(&areas),
+        }
+    }
+
+    /// The same light with another rule for its density.
+    #[must_use]
+    pub fn with_density(self, density: AreaDensity) -> Self {
+        Self { density, ..self }
+    }
+
+    /// Where the light is.
+    pub fn shape(&self) -> &AreaShape {
+        &self.shape
+    }
+
+    /// The radiance that the light emits.
+    pub fn radiance(&self) -> Rgb {
+        self.radiance
+    }
+
+    /// True when both sides emit.
+    pub fn is_two_sided(&self) -> bool {
+        self.two_sided
+    }
+
+    /// Total area of one side, in scene units squared.
+    pub fn area(&self) -> f32 {
+        self.area
+    }
+
+    /// A point evenly spread over the area.
+    pub(super) fn sample(
+        &self,
+        shapes: &Shapes,
+        from: Vec3,
+        u_choice: f32,
+        u: Vec2,
+    ) -> Option<LightSample> {
+        let (point, normal, primitive) = self.point_on(shapes, u_choice, u)?;
+        let (wi, distance) = direction_to(from, point)?;
+        let hit = LightHit {
+            point,
+            normal,
+            distance,
+            primitive,
+        };
+        Some(LightSample {
+            wi,
+            distance,
+            radiance: self.radiance,
+            pdf: usable_pdf(self.pdf(wi, hit))?,
+            is_delta: false,
+            point,
+            normal,
+        })
+    }
+
+    pub(super) fn pdf(&self, wi: Vec3, hit: LightHit) -> f32 {
+        let cos = self.emission_cosine(hit.normal, wi);
+        if !(cos > 0.0 && self.area > 0.0) {
+            return 0.0;
+        }
+        // One factor at a time: the square of a tiny distance would vanish.
+        let per_distance = hit.distance / (self.area * cos);
+        match self.density {
+            AreaDensity::Correct => per_distance * hit.distance,
+            AreaDensity::Course => per_distance,
+        }
+    }
+
+    pub(super) fn radiance_at(&self, normal: Vec3, wi: Vec3) -> Rgb {
+        if self.emission_cosine(normal, wi) > 0.0 {
+            self.radiance
+        } else {
+            Rgb::ZERO
+        }
+    }
+
+    pub(super) fn power(&self) -> f32 {
+        let sides = if self.two_sided { 2.0 } else { 1.0 };
+        PI * sides * self.area * luminance(self.radiance)
+    }
+
+    /// Cosine at the light towards the viewer; not positive where nothing is emitted.
+    fn emission_cosine(&self, normal: Vec3, wi: Vec3) -> f32 {
+        let cos = -normal.dot(wi);
+        if self.two_sided { cos.abs() } else { cos }
+    }
+
+    /// Point, unit normal and primitive.
+    fn point_on(&self, shapes: &Shapes, u_choice: f32, u: Vec2) -> Option<(Vec3, Vec3, u32)> {
+        let chosen = self.by_area.as_ref()?.sample(u_choice);
+        match &self.shape {
+            AreaShape::Triangles { primitives } => {
+                let primitive = primitives[chosen.index];
+                let [p0, p1, p2] = shapes.vertices(primitive as usize);
+                let (b1, b2) = uniform_triangle(u);
+                let (edge_1, edge_2) = (p1 - p0, p2 - p0);
+                let point = p0 + b1 * edge_1 + b2 * edge_2;
+                Some((point, edge_1.cross(edge_2).try_normalize()?, primitive))
+            }
+            AreaShape::Rectangle {
+                corner,
+                edge_u,
+                edge_v,
+            } => {
+                let point = *corner + u.x * *edge_u + u.y * *edge_v;
+                Some((point, edge_u.cross(*edge_v).try_normalize()?, u32::MAX))
+            }
+        }
+    }
+}
+
+fn triangle_area([p0, p1, p2]: [Vec3; 3]) -> f32 {
+    0.5 * (p1 - p0).cross(p2 - p0).length()
+}

@@ -1,0 +1,143 @@
+use super::ONE_MINUS_EPSILON;
+
+/// An entry chosen by [`Distribution1d::sample`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DiscreteSample {
+    /// The chosen entry.
+    pub index: usize,
+    /// The probability with which it is chosen, above 0.
+    pub pmf: f32,
+    /// The random number stretched over the chosen entry, uniform in [0, 1), to be used again.
+    pub remapped: f32,
+}
+
+/// Chooses among entries in proportion to their weights.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Distribution1d {
+    /// Running sums scaled to end at exactly 1, with a leading 0.
+    cdf: Vec<f64>,
+}
+
+impl Distribution1d {
+    /// A distribution proportional to `weights`.
+    ///
+    /// Weights that are not finite and positive count as zero; `None` when nothing is left.
+    pub fn new(weights: &[f32]) -> Option<Self> {
+        Self::from_usable(weights.iter().copied().map(usable_weight))
+    }
+
+    /// As [`Self::new`], for finite weights of which none is negative.
+    pub(super) fn from_usable(weights: impl Iterator<Item = f64>) -> Option<Self> {
+        let mut sum = 0.0;
+        let mut cdf = vec![0.0];
+        cdf.extend(weights.map(|weight| {
+            sum += weight;
+            sum
+        }));
+        if sum <= 0.0 {
+            return None;
+        }
+        for value in &mut cdf {
+            *value /= sum;
+        }
+        Some(Self { cdf })
+    }
+
+    /// Number of entries, those of weight zero included.
+    pub fn len(&self) -> usize {
+        self.cdf.len() - 1
+    }
+
+    /// Always false: a distribution has an entry of positive weight.
+    pub fn is_empty(&self) -> bool {
+        false
+    }
+
+    /// The entry that `u` in [0, 1) falls on; entries of weight zero are never chosen.
+    pub fn sample(&self, u: f32) -> DiscreteSample {
+        let u = f64::from(u).clamp(0.0, f64::from(ONE_MINUS_EPSILON));
+        let (index, remapped) = invert(&self.cdf, u);
+        DiscreteSample {
+            index,
+            pmf: self.pmf(index),
+            remapped,
+        }
+    }
+
+    /// The probability of entry `index`; 0 when there is no such entry.
+    pub fn pmf(&self, index: usize) -> f32 {
+        match (self.cdf.get(index), self.cdf.get(index + 1)) {
+            (Some(low), Some(high)) => (high - low) as f32,
+            _ => 0.0,
+        }
+    }
+}
+
+/// What a weight counts for: itself, or nothing when it is not finite and positive.
+pub(super) fn usable_weight(weight: f32) -> f64 {
+    if weight.is_finite() && weight > 0.0 {
+        f64::from(weight)
+    } else {
+        0.0
+    }
+}
+
+/// The interval of `cdf` (rising from 0 to 1, at least one step) that holds `u` in [0, 1), and where
+/// in it `u` lies, in [0, 1).
+pub(super) fn invert(cdf: &[f64], u: f64) -> (usize, f32) {
+    // The last edge at or below u: flat stretches, the entries of weight zero, are stepped over.
+    let index = cdf.partition_point(|&edge| edge <= u) - 1;
+    let (low, high) = (cdf[index], cdf[index + 1]);
+    let remapped = ((u - low) / (high - low)) as f32;
+    (index, remapped.min(ONE_MINUS_EPSILON))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_to_choose_from_gives_no_distribution() {
+        assert!(Distribution1d::new(&[]).is_none());
+        assert!(Distribution1d::new(&[0.0, -1.0, f32::NAN, f32::INFINITY]).is_none());
+    }
+
+    #[test]
+    fn zero_weights_are_never_chosen_and_frequencies_match() {
+        let weights = [0.0, 3.0, 0.0, 0.0, 1.0, 1e-9, 4.0, f32::NAN, 0.0];
+        let distribution = Distribution1d::new(&weights).expect("some weights are positive");
+        let n = 1 << 20;
+        let mut counts = [0_u32; 9];
+        for i in 0..n {
+            let sample = distribution.sample(i as f32 / n as f32);
+            assert_eq!(sample.pmf, distribution.pmf(sample.index));
+            assert!(sample.pmf > 0.0 && (0.0..1.0).contains(&sample.remapped));
+            counts[sample.index] += 1;
+        }
+        let expected = [0.0, 0.375, 0.0, 0.0, 0.125, 0.0, 0.5, 0.0, 0.0];
+        for (count, share) in counts.into_iter().zip(expected) {
+            assert!(
+                (f64::from(count) / f64::from(n) - share).abs() < 2e-6,
+                "{counts:?}"
+            );
+        }
+        for end in [0.0, ONE_MINUS_EPSILON, 1.0] {
+            assert!(distribution.sample(end).pmf > 0.0);
+        }
+        assert_eq!((distribution.len(), distribution.pmf(99)), (9, 0.0));
+    }
+
+    #[test]
+    fn probabilities_add_to_one_and_the_number_is_used_again() {
+        let weights: Vec<f32> = (0..1000).map(|i| ((i * 7919) % 101) as f32).collect();
+        let distribution = Distribution1d::new(&weights).expect("some weights are positive");
+        let sum: f64 = (0..1000).map(|i| f64::from(distribution.pmf(i))).sum();
+        assert!((sum - 1.0).abs() < 1e-6);
+        let sample = distribution.sample(0.4321);
+        let below: f64 = (0..sample.index)
+            .map(|i| f64::from(distribution.pmf(i)))
+            .sum();
+        let back = below + f64::from(sample.remapped * sample.pmf);
+        assert!((back - 0.4321).abs() < 1e-6);
+    }
+}
