@@ -4,7 +4,7 @@ mod pixel;
 mod tile;
 
 pub use pixel::PixelStats;
-pub use tile::{Tile, TILE_SIZE};
+pub use tile::{TILE_SIZE, Tile};
 
 use crate::image::Region;
 
@@ -18,7 +18,10 @@ pub struct Film {
 impl Film {
     /// An empty film of `region`.
     pub fn new(region: Region) -> Self {
-        Self { region, tiles: tile::cover(region) }
+        Self {
+            region,
+            tiles: tile::cover(region),
+        }
     }
 
     /// The pixels that the film covers, in image coordinates.
@@ -41,7 +44,10 @@ impl Film {
         if !self.region.contains(x, y) {
             return None;
         }
-        let (column, row) = ((x - self.region.x) / TILE_SIZE, (y - self.region.y) / TILE_SIZE);
+        let (column, row) = (
+            (x - self.region.x) / TILE_SIZE,
+            (y - self.region.y) / TILE_SIZE,
+        );
         let tile = &self.tiles[(row * self.region.width.div_ceil(TILE_SIZE) + column) as usize];
         Some(&tile.pixels()[tile.index(x, y)])
     }
@@ -90,7 +96,12 @@ mod tests {
 
     #[test]
     fn tiles_cover_odd_regions_once_and_pixels_are_found() {
-        let region = Region { x: 5, y: 7, width: 71, height: 45 };
+        let region = Region {
+            x: 5,
+            y: 7,
+            width: 71,
+            height: 45,
+        };
         let mut film = Film::new(region);
         let covered: usize = film.tiles().iter().map(|t| t.pixels().len()).sum();
         assert_eq!(covered, 71 * 45);
@@ -101,7 +112,10 @@ mod tests {
             }
         }
         for (x, y) in [(5, 7), (75, 51), (40, 40), (36, 38), (37, 39)] {
-            assert_eq!(film.pixel(x, y).map(PixelStats::mean), Some([f64::from(x), f64::from(y), 0.0]));
+            assert_eq!(
+                film.pixel(x, y).map(PixelStats::mean),
+                Some([f64::from(x), f64::from(y), 0.0])
+            );
         }
         assert!(film.pixel(4, 7).is_none() && film.pixel(76, 7).is_none());
     }

@@ -30,7 +30,8 @@ impl PixelStats {
             self.mean[channel] += before / n;
             self.deviation[channel] += before * (x - self.mean[channel]);
         }
-        self.luminance_deviation += luminance_before * (radiance_luminance - luminance_f64(self.mean));
+        self.luminance_deviation +=
+            luminance_before * (radiance_luminance - luminance_f64(self.mean));
     }
 
     /// Samples so far.
@@ -45,7 +46,11 @@ impl PixelStats {
 
     /// Mean radiance as pixels carry it.
     pub fn radiance(&self) -> Rgb {
-        Rgb::new(self.mean[0] as f32, self.mean[1] as f32, self.mean[2] as f32)
+        Rgb::new(
+            self.mean[0] as f32,
+            self.mean[1] as f32,
+            self.mean[2] as f32,
+        )
     }
 
     /// Unbiased variance of one sample per channel; `None` below two samples.
@@ -64,7 +69,9 @@ impl PixelStats {
     pub fn relative_squared_error(&self) -> Option<f64> {
         let variance = self.variance()?;
         let n = f64::from(self.count);
-        let sum: f64 = (0..3).map(|c| variance[c] / n / (self.mean[c] * self.mean[c] + 0.01)).sum();
+        let sum: f64 = (0..3)
+            .map(|c| variance[c] / n / (self.mean[c] * self.mean[c] + 0.01))
+            .sum();
         Some(sum / 3.0)
     }
 
@@ -94,13 +101,20 @@ mod tests {
             let mut stats = PixelStats::default();
             let n = 100_000;
             for i in 0..n {
-                let x = if i % 2 == 0 { mean + deviation } else { mean - deviation };
+                let x = if i % 2 == 0 {
+                    mean + deviation
+                } else {
+                    mean - deviation
+                };
                 stats.add(Rgb::splat(x));
             }
             let (low, high) = (f64::from(mean - deviation), f64::from(mean + deviation));
             let expected = ((high - low) / 2.0).powi(2) * f64::from(n) / f64::from(n - 1);
             let variance = stats.variance().map_or(0.0, |v| v[0]);
-            assert!((variance / expected - 1.0).abs() < 1e-3, "{variance} {expected}");
+            assert!(
+                (variance / expected - 1.0).abs() < 1e-3,
+                "{variance} {expected}"
+            );
         }
     }
 

@@ -30,7 +30,10 @@ impl Tile {
     /// Image coordinates of pixel number `index` of the tile.
     pub fn position(&self, index: usize) -> (u32, u32) {
         let index = index as u32;
-        (self.area.x + index % self.area.width, self.area.y + index / self.area.width)
+        (
+            self.area.x + index % self.area.width,
+            self.area.y + index / self.area.width,
+        )
     }
 
     /// The number in the tile of the pixel at image coordinates `x`, `y`, which lies inside.

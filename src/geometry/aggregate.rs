@@ -25,6 +25,15 @@ impl Aggregate {
         Self { shapes }
     }
 
+    /// tmp
+    pub fn build_with(
+        shapes: Shapes,
+        settings: BvhSettings,
+        _progress: &(dyn Fn(f32) -> std::ops::ControlFlow<()> + Sync),
+    ) -> Option<Self> {
+        Some(Self::build(shapes, settings))
+    }
+
     /// The shapes.
     pub fn shapes(&self) -> &Shapes {
         &self.shapes

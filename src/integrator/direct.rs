@@ -34,19 +34,40 @@ impl DirectPlan {
         let lights = scene.sampled_lights();
         let per_light = |light: u32| {
             let count = if scene.light(light).is_delta() { 1 } else { n };
-            std::iter::repeat_n(DirectSample::Light { light, weight: 1.0 / count as f32 }, count as usize)
+            std::iter::repeat_n(
+                DirectSample::Light {
+                    light,
+                    weight: 1.0 / count as f32,
+                },
+                count as usize,
+            )
         };
         let samples = match settings.mode {
             _ if settings.max_depth.0 == 0 => Vec::new(),
             Mode::Importance => lights.iter().copied().flat_map(per_light).collect(),
             Mode::Best if lights.is_empty() => Vec::new(),
-            Mode::Best if scene.is_course_compatible() => lights.iter().copied().flat_map(per_light).collect(),
-            Mode::Best => vec![DirectSample::AnyLight { weight: 1.0 / n as f32 }; n as usize],
+            Mode::Best if scene.is_course_compatible() => {
+                lights.iter().copied().flat_map(per_light).collect()
+            }
+            Mode::Best => vec![
+                DirectSample::AnyLight {
+                    weight: 1.0 / n as f32
+                };
+                n as usize
+            ],
             Mode::Hemisphere => {
                 let count = scene.hemisphere_light_count() * n;
-                let mut samples = vec![DirectSample::Hemisphere { weight: 1.0 / count as f32 }; count as usize];
+                let mut samples = vec![
+                    DirectSample::Hemisphere {
+                        weight: 1.0 / count as f32
+                    };
+                    count as usize
+                ];
                 if !scene.is_course_compatible() {
-                    let delta = lights.iter().copied().filter(|&light| scene.light(light).is_delta());
+                    let delta = lights
+                        .iter()
+                        .copied()
+                        .filter(|&light| scene.light(light).is_delta());
                     samples.extend(delta.map(|light| DirectSample::Light { light, weight: 1.0 }));
                 }
                 samples
@@ -82,16 +103,24 @@ impl PathTracer<'_> {
     }
 
     /// The ray of direct light sample `number` of the plan; `None` when it would carry nothing.
-    pub(super) fn direct_ray(&self, path: &Path, vertex: &Vertex<'_>, number: u32) -> Option<DirectRay> {
+    pub(super) fn direct_ray(
+        &self,
+        path: &Path,
+        vertex: &Vertex<'_>,
+        number: u32,
+    ) -> Option<DirectRay> {
         match self.plan.samples[number as usize] {
-            DirectSample::Light { light, weight } => self.shadow_ray(path, vertex, number, light, weight),
+            DirectSample::Light { light, weight } => {
+                self.shadow_ray(path, vertex, number, light, weight)
+            }
             DirectSample::AnyLight { weight } => {
                 let u = path.sampler.get_1d(path.bounce, Slot::LightChoice(number));
                 let (light, pmf) = self.scene.choose_light(u)?;
                 self.shadow_ray(path, vertex, number, light, weight / pmf)
             }
             DirectSample::Hemisphere { weight } => {
-                let mut local = uniform_hemisphere(path.sampler.get_2d(path.bounce, Slot::Hemisphere(number)));
+                let mut local =
+                    uniform_hemisphere(path.sampler.get_2d(path.bounce, Slot::Hemisphere(number)));
                 if vertex.wo.z < 0.0 {
                     local.z = -local.z;
                 }
@@ -99,18 +128,35 @@ impl PathTracer<'_> {
                 let local = vertex.local(wi)?;
                 let scattered = vertex.bsdf.eval(vertex.wo, local) * local.z.abs();
                 let factor = path.throughput * scattered * (weight / UNIFORM_HEMISPHERE_PDF);
-                (factor != Rgb::ZERO).then(|| DirectRay::Gather { ray: Ray::new(vertex.origin(wi), wi), factor })
+                (factor != Rgb::ZERO).then(|| DirectRay::Gather {
+                    ray: Ray::new(vertex.origin(wi), wi),
+                    factor,
+                })
             }
         }
     }
 
-    fn shadow_ray(&self, path: &Path, vertex: &Vertex<'_>, number: u32, light: u32, weight: f32) -> Option<DirectRay> {
+    fn shadow_ray(
+        &self,
+        path: &Path,
+        vertex: &Vertex<'_>,
+        number: u32,
+        light: u32,
+        weight: f32,
+    ) -> Option<DirectRay> {
         let u = path.sampler.get_2d(path.bounce, Slot::LightPoint(number));
-        let u_part = path.sampler.get_2d(path.bounce, Slot::LightChoice(number)).y;
-        let sample = self.scene.light(light).sample(self.scene.shapes(), vertex.surface.point, u_part, u)?;
+        let u_part = path
+            .sampler
+            .get_2d(path.bounce, Slot::LightChoice(number))
+            .y;
+        let sample =
+            self.scene
+                .light(light)
+                .sample(self.scene.shapes(), vertex.surface.point, u_part, u)?;
         let local = vertex.local(sample.wi)?;
         let scattered = vertex.bsdf.eval(vertex.wo, local) * local.z.abs();
-        let mut contribution = path.throughput * scattered * sample.radiance * (weight / sample.pdf);
+        let mut contribution =
+            path.throughput * scattered * sample.radiance * (weight / sample.pdf);
         if contribution == Rgb::ZERO {
             return None;
         }
@@ -140,6 +186,7 @@ impl PathTracer<'_> {
         if hit.is_miss() {
             return self.scene.environment_radiance(ray.direction, false);
         }
-        self.scene.emitted(&self.scene.interaction(ray, hit), -ray.direction)
+        self.scene
+            .emitted(&self.scene.interaction(ray, hit), -ray.direction)
     }
 }

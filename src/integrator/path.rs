@@ -96,7 +96,12 @@ impl Vertex<'_> {
 
     /// Where a ray towards `direction` starts.
     pub(super) fn origin(&self, direction: Vec3) -> Vec3 {
-        offset_origin(self.surface.point, self.surface.error, self.surface.geometric_normal, direction)
+        offset_origin(
+            self.surface.point,
+            self.surface.error,
+            self.surface.geometric_normal,
+            direction,
+        )
     }
 }
 
@@ -116,7 +121,12 @@ pub struct PathTracer<'a> {
 impl<'a> PathTracer<'a> {
     /// The path tracer of `scene` seen by `camera`.
     pub fn new(scene: &'a PreparedScene, camera: &'a RayCamera, settings: PathSettings) -> Self {
-        Self { scene, camera, settings, plan: DirectPlan::new(scene, &settings) }
+        Self {
+            scene,
+            camera,
+            settings,
+            plan: DirectPlan::new(scene, &settings),
+        }
     }
 
     /// The start of a path: its camera ray through a uniform point of the pixel (box filter).
@@ -124,7 +134,9 @@ impl<'a> PathTracer<'a> {
         let sampler = PathSampler::new(self.settings.seed, id.pixel, id.sample);
         let pixel = Vec2::new(id.pixel[0] as f32, id.pixel[1] as f32);
         let position = pixel + sampler.get_2d(0, Slot::Pixel);
-        let ray = self.camera.generate_ray(position, || uniform_disk(sampler.get_2d(0, Slot::Lens)));
+        let ray = self
+            .camera
+            .generate_ray(position, || uniform_disk(sampler.get_2d(0, Slot::Lens)));
         Path {
             sampler,
             ray,
@@ -137,21 +149,24 @@ impl<'a> PathTracer<'a> {
 
     /// Takes what `path` met: adds emission; `None` when the path ends there.
     pub(super) fn arrive(&self, path: &mut Path, hit: &Hit) -> Option<Vertex<'a>> {
+        let direction = path.ray.direction;
         if hit.is_miss() {
-            let radiance = self.scene.environment_radiance(path.ray.direction, path.bounce == 0);
+            let radiance = self.scene.environment_radiance(direction, path.bounce == 0);
             self.add_emission(path, radiance, |from| {
-                self.scene.environment_pdf(from, path.ray.direction)
+                self.scene.environment_pdf(from, direction)
             });
             return None;
         }
         let surface = self.scene.interaction(&path.ray, hit);
-        let emitted = self.scene.emitted(&surface, -path.ray.direction);
-        self.add_emission(path, emitted, |from| self.scene.light_pdf(from, path.ray.direction, &surface, hit.t));
+        let emitted = self.scene.emitted(&surface, -direction);
+        self.add_emission(path, emitted, |from| {
+            self.scene.light_pdf(from, direction, &surface, hit.t)
+        });
         let bsdf = self.scene.bsdf(hit.primitive);
         if path.bounce >= self.settings.max_depth.0 || bsdf.is_black() {
             return None;
         }
-        Some(vertex(surface, -path.ray.direction, bsdf))
+        Some(vertex(surface, -direction, bsdf))
     }
 
     fn add_emission(&self, path: &mut Path, emitted: Rgb, light_pdf: impl FnOnce(Vec3) -> f32) {
@@ -161,9 +176,10 @@ impl<'a> PathTracer<'a> {
         let weight = match path.emission_weight {
             EmissionWeight::None => return,
             EmissionWeight::Full => 1.0,
-            EmissionWeight::Shared { from, scatter_pdf } => {
-                power_heuristic(scatter_pdf, self.settings.light_samples as f32 * light_pdf(from))
-            }
+            EmissionWeight::Shared { from, scatter_pdf } => power_heuristic(
+                scatter_pdf,
+                self.settings.light_samples as f32 * light_pdf(from),
+            ),
         };
         path.radiance += path.throughput * emitted * weight;
     }
@@ -182,7 +198,11 @@ impl<'a> PathTracer<'a> {
             return false;
         }
         let u_lobe = sampler.get_1d(bounce, Slot::Lobe);
-        let Some(sample) = vertex.bsdf.sample(vertex.wo, u_lobe, sampler.get_2d(bounce, Slot::Scatter)) else {
+        let Some(sample) =
+            vertex
+                .bsdf
+                .sample(vertex.wo, u_lobe, sampler.get_2d(bounce, Slot::Scatter))
+        else {
             return false;
         };
         let direction = vertex.frame.to_world(sample.wi).normalize_or_zero();
@@ -192,15 +212,17 @@ impl<'a> PathTracer<'a> {
         path.throughput *= sample.weight();
         path.emission_weight = match sample.lobe {
             Lobe::Delta => EmissionWeight::Full,
-            _ if self.shares_emission() => {
-                EmissionWeight::Shared { from: vertex.surface.point, scatter_pdf: sample.pdf }
-            }
+            _ if self.shares_emission() => EmissionWeight::Shared {
+                from: vertex.surface.point,
+                scatter_pdf: sample.pdf,
+            },
             _ => EmissionWeight::None,
         };
         path.ray = Ray::new(vertex.origin(direction), direction);
         path.bounce += 1;
         // The first continuation is always taken, as in the course.
-        path.throughput.max_element() > 0.0 && (path.bounce < 2 || survives(path, sampler.get_1d(bounce, Slot::Roulette)))
+        path.throughput.max_element() > 0.0
+            && (path.bounce < 2 || survives(path, sampler.get_1d(bounce, Slot::Roulette)))
     }
 }
 
@@ -211,7 +233,12 @@ fn vertex(mut surface: SurfaceInteraction, wo: Vec3, bsdf: &Bsdf) -> Vertex<'_> 
         surface.shading_normal = surface.geometric_normal;
     }
     let frame = Frame::from_normal(surface.shading_normal);
-    Vertex { surface, frame, wo: frame.to_local(wo), bsdf }
+    Vertex {
+        surface,
+        frame,
+        wo: frame.to_local(wo),
+        bsdf,
+    }
 }
 
 /// Russian roulette by throughput; survivors are divided by their probability, so the mean stays.

@@ -17,7 +17,9 @@ pub fn reference(tracer: &PathTracer<'_>, id: PathId, counts: &mut PathCounts) -
     counts.camera_rays += 1;
     loop {
         let hit = closest(tracer, &path.ray, counts);
-        let Some(vertex) = tracer.arrive(&mut path, &hit) else { break };
+        let Some(vertex) = tracer.arrive(&mut path, &hit) else {
+            break;
+        };
         if tracer.wants_direct(&path, &vertex) {
             for number in 0..tracer.plan.len() as u32 {
                 match tracer.direct_ray(&path, &vertex, number) {
@@ -48,14 +50,20 @@ pub fn reference(tracer: &PathTracer<'_>, id: PathId, counts: &mut PathCounts) -
 
 fn closest(tracer: &PathTracer<'_>, ray: &Ray, counts: &mut PathCounts) -> Hit {
     let mut hit = [Hit::MISS];
-    tracer.scene.aggregate().closest_hit(std::slice::from_ref(ray), &mut hit, &mut counts.trace);
+    tracer
+        .scene
+        .aggregate()
+        .closest_hit(std::slice::from_ref(ray), &mut hit, &mut counts.trace);
     counts.closest_rays += 1;
     hit[0]
 }
 
 fn occluded(tracer: &PathTracer<'_>, ray: &Ray, counts: &mut PathCounts) -> bool {
     let mut blocked = [false];
-    tracer.scene.aggregate().any_hit(std::slice::from_ref(ray), &mut blocked, &mut counts.trace);
+    tracer
+        .scene
+        .aggregate()
+        .any_hit(std::slice::from_ref(ray), &mut blocked, &mut counts.trace);
     counts.shadow_rays += 1;
     blocked[0]
 }

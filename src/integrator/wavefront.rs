@@ -53,7 +53,13 @@ impl Wavefront {
     ///
     /// # Panics
     /// When the slices differ in length.
-    pub fn trace(&mut self, tracer: &PathTracer<'_>, ids: &[PathId], radiance: &mut [Rgb], counts: &mut PathCounts) {
+    pub fn trace(
+        &mut self,
+        tracer: &PathTracer<'_>,
+        ids: &[PathId],
+        radiance: &mut [Rgb],
+        counts: &mut PathCounts,
+    ) {
         assert_eq!(ids.len(), radiance.len());
         self.paths.clear();
         self.paths.extend(ids.iter().map(|&id| tracer.start(id)));
@@ -67,9 +73,12 @@ impl Wavefront {
             self.add_direct_light(tracer, &vertices, counts);
             let paths = &mut self.paths;
             self.active.clear();
-            self.active.extend(vertices.iter().filter_map(|(owner, vertex)| {
-                tracer.scatter(&mut paths[*owner as usize], vertex).then_some(*owner)
-            }));
+            self.active
+                .extend(vertices.iter().filter_map(|(owner, vertex)| {
+                    tracer
+                        .scatter(&mut paths[*owner as usize], vertex)
+                        .then_some(*owner)
+                }));
         }
         for (path, out) in self.paths.iter().zip(radiance) {
             let is_valid = is_valid_radiance(path.radiance);
@@ -80,10 +89,17 @@ impl Wavefront {
 
     fn trace_active(&mut self, tracer: &PathTracer<'_>, counts: &mut PathCounts) {
         self.rays.clear();
-        self.rays.extend(self.active.iter().map(|&owner| self.paths[owner as usize].ray));
+        self.rays.extend(
+            self.active
+                .iter()
+                .map(|&owner| self.paths[owner as usize].ray),
+        );
         self.hits.clear();
         self.hits.resize(self.rays.len(), Hit::MISS);
-        tracer.scene.aggregate().closest_hit(&self.rays, &mut self.hits, &mut counts.trace);
+        tracer
+            .scene
+            .aggregate()
+            .closest_hit(&self.rays, &mut self.hits, &mut counts.trace);
         counts.closest_rays += self.rays.len() as u64;
     }
 
@@ -97,7 +113,12 @@ impl Wavefront {
         }
     }
 
-    fn add_direct_light(&mut self, tracer: &PathTracer<'_>, vertices: &[(u32, Vertex<'_>)], counts: &mut PathCounts) {
+    fn add_direct_light(
+        &mut self,
+        tracer: &PathTracer<'_>,
+        vertices: &[(u32, Vertex<'_>)],
+        counts: &mut PathCounts,
+    ) {
         for number in 0..tracer.plan.len() as u32 {
             self.shadow.clear();
             self.gather.clear();
@@ -108,7 +129,9 @@ impl Wavefront {
                 }
                 match tracer.direct_ray(path, vertex, number) {
                     None => counts.culled_shadow_rays += 1,
-                    Some(DirectRay::Shadow { ray, contribution }) => self.shadow.push(ray, contribution, owner),
+                    Some(DirectRay::Shadow { ray, contribution }) => {
+                        self.shadow.push(ray, contribution, owner)
+                    }
                     Some(DirectRay::Gather { ray, factor }) => self.gather.push(ray, factor, owner),
                 }
             }
@@ -120,10 +143,17 @@ impl Wavefront {
     fn connect(&mut self, tracer: &PathTracer<'_>, counts: &mut PathCounts) {
         self.occluded.clear();
         self.occluded.resize(self.shadow.rays.len(), false);
-        tracer.scene.aggregate().any_hit(&self.shadow.rays, &mut self.occluded, &mut counts.trace);
+        tracer
+            .scene
+            .aggregate()
+            .any_hit(&self.shadow.rays, &mut self.occluded, &mut counts.trace);
         counts.shadow_rays += self.shadow.rays.len() as u64;
-        for ((&owner, &contribution), &occluded) in
-            self.shadow.owners.iter().zip(&self.shadow.carried).zip(&self.occluded)
+        for ((&owner, &contribution), &occluded) in self
+            .shadow
+            .owners
+            .iter()
+            .zip(&self.shadow.carried)
+            .zip(&self.occluded)
         {
             if !occluded {
                 self.paths[owner as usize].radiance += contribution;
@@ -134,7 +164,11 @@ impl Wavefront {
     fn collect(&mut self, tracer: &PathTracer<'_>, counts: &mut PathCounts) {
         self.gather_hits.clear();
         self.gather_hits.resize(self.gather.rays.len(), Hit::MISS);
-        tracer.scene.aggregate().closest_hit(&self.gather.rays, &mut self.gather_hits, &mut counts.trace);
+        tracer.scene.aggregate().closest_hit(
+            &self.gather.rays,
+            &mut self.gather_hits,
+            &mut counts.trace,
+        );
         counts.closest_rays += self.gather.rays.len() as u64;
         for (i, &owner) in self.gather.owners.iter().enumerate() {
             let gathered = tracer.gathered(&self.gather.rays[i], &self.gather_hits[i]);

@@ -65,16 +65,24 @@ pub(super) fn emitters(scene: &Scene, course_compatible: bool) -> Emitters {
     } else {
         let mut keys: Vec<(usize, u16)> = found.surfaces.keys().copied().collect();
         keys.sort_unstable();
-        keys.into_iter().filter_map(|key| FlatEmitter::new(scene, key)).collect()
+        keys.into_iter()
+            .filter_map(|key| FlatEmitter::new(scene, key))
+            .collect()
     };
     for light in &scene.lights {
-        let LightKind::Area { radiance } = light.kind else { continue };
+        let LightKind::Area { radiance } = light.kind else {
+            continue;
+        };
         let rectangle = rectangle(&light.name, light.world_from_light, radiance);
         let normal = rectangle.edge_u.cross(rectangle.edge_v);
         match candidates.iter().position(|c| c.is(&rectangle)) {
             Some(at) => {
                 let mesh = candidates.swap_remove(at);
-                let emission = SurfaceEmission { radiance, two_sided: false, towards: Some(normal) };
+                let emission = SurfaceEmission {
+                    radiance,
+                    two_sided: false,
+                    towards: Some(normal),
+                };
                 found.surfaces.insert(mesh.key, emission);
                 found.notes.push(format!(
                     "Area light '{}' lies on the emissive mesh '{}': the mesh emits, on the light's side only, with the light's colour.",
@@ -94,8 +102,18 @@ fn rectangle(name: &str, world_from_light: DMat4, radiance: Rgb) -> EmittingRect
     let corner = center - 0.5 * (edge_u + edge_v);
     let faces = world_from_light.transform_vector3(DVec3::NEG_Z);
     // Swapping the edges turns the emitting side.
-    let (edge_u, edge_v) = if edge_u.cross(edge_v).dot(faces) < 0.0 { (edge_v, edge_u) } else { (edge_u, edge_v) };
-    EmittingRectangle { name: name.to_owned(), corner, edge_u, edge_v, radiance }
+    let (edge_u, edge_v) = if edge_u.cross(edge_v).dot(faces) < 0.0 {
+        (edge_v, edge_u)
+    } else {
+        (edge_u, edge_v)
+    };
+    EmittingRectangle {
+        name: name.to_owned(),
+        corner,
+        edge_u,
+        edge_v,
+        radiance,
+    }
 }
 
 /// An emissive mesh slot and its extent.
@@ -108,12 +126,20 @@ struct FlatEmitter {
 impl FlatEmitter {
     fn new(scene: &Scene, key: (usize, u16)) -> Option<Self> {
         let instance = &scene.instances[key.0];
-        let Geometry::Mesh(mesh) = scene.geometries[instance.geometry].as_ref() else { return None };
-        let mut emitter = Self { key, area: 0.0, vertices: Vec::new() };
+        let Geometry::Mesh(mesh) = scene.geometries[instance.geometry].as_ref() else {
+            return None;
+        };
+        let mut emitter = Self {
+            key,
+            area: 0.0,
+            vertices: Vec::new(),
+        };
         for triangle in mesh.triangles.iter().filter(|t| t.material_slot == key.1) {
-            let [a, b, c] = triangle
-                .corners
-                .map(|c| instance.world_from_object.transform_point3(mesh.positions[c.position as usize]));
+            let [a, b, c] = triangle.corners.map(|c| {
+                instance
+                    .world_from_object
+                    .transform_point3(mesh.positions[c.position as usize])
+            });
             emitter.area += 0.5 * (b - a).cross(c - a).length();
             emitter.vertices.extend([a, b, c]);
         }
@@ -125,11 +151,16 @@ impl FlatEmitter {
         let normal = light.edge_u.cross(light.edge_v);
         let area = normal.length();
         let size = area.sqrt();
-        let Some(unit) = normal.try_normalize() else { return false };
+        let Some(unit) = normal.try_normalize() else {
+            return false;
+        };
         let center = light.corner + 0.5 * (light.edge_u + light.edge_v);
         let middle = self.vertices.iter().sum::<DVec3>() / self.vertices.len() as f64;
         (self.area / area - 1.0).abs() <= SAME_AREA
-            && self.vertices.iter().all(|v| (*v - center).dot(unit).abs() <= SAME_PLANE * size)
+            && self
+                .vertices
+                .iter()
+                .all(|v| (*v - center).dot(unit).abs() <= SAME_PLANE * size)
             && (middle - center).length() <= 0.5 * size
     }
 }

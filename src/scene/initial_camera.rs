@@ -21,7 +21,9 @@ pub fn initial_camera(scene: &Scene, rule: CameraRule, crops: bool) -> Camera {
         (CameraRule::Auto, Some(_), Dialect::Plain) => CameraRule::File,
         (rule, _, _) => rule,
     };
-    let (min, max) = scene.bounds().unwrap_or((DVec3::splat(-1.0), DVec3::splat(1.0)));
+    let (min, max) = scene
+        .bounds()
+        .unwrap_or((DVec3::splat(-1.0), DVec3::splat(1.0)));
     let center = min * 0.5 + max * 0.5;
     let diagonal = match (max - min).length() {
         d if d > 0.0 && d.is_finite() => d,
@@ -52,11 +54,21 @@ fn fitted(center: DVec3, diagonal: f64) -> Camera {
 fn as_it_stands(file: &FileCamera, center: DVec3) -> Camera {
     let m = file.world_from_camera;
     let eye = m.transform_point3(DVec3::ZERO);
-    let forward = m.transform_vector3(DVec3::NEG_Z).try_normalize().unwrap_or(DVec3::NEG_Z);
+    let forward = m
+        .transform_vector3(DVec3::NEG_Z)
+        .try_normalize()
+        .unwrap_or(DVec3::NEG_Z);
     // The pivot: as far along the view as the middle of the scene lies.
     let distance = (center - eye).dot(forward);
-    let distance = if distance > 1e-6 { distance } else { (center - eye).length().max(1.0) };
-    let up = m.transform_vector3(DVec3::Y).try_normalize().unwrap_or(DVec3::Y);
+    let distance = if distance > 1e-6 {
+        distance
+    } else {
+        (center - eye).length().max(1.0)
+    };
+    let up = m
+        .transform_vector3(DVec3::Y)
+        .try_normalize()
+        .unwrap_or(DVec3::Y);
     Camera {
         eye,
         target: eye + forward * distance,
@@ -86,13 +98,20 @@ fn course(file: Option<&FileCamera>, center: DVec3, diagonal: f64, crops: bool) 
         None => (COURSE_FOV.0.to_radians(), COURSE_FOV.1.to_radians()),
     };
     // The angle on the axis that is too narrow for 4:3 is widened.
-    let half_height = (y * 0.5).tan().max((x * 0.5).tan() * COURSE_SIZE.1 / COURSE_SIZE.0);
+    let half_height = (y * 0.5)
+        .tan()
+        .max((x * 0.5).tan() * COURSE_SIZE.1 / COURSE_SIZE.0);
     let framing = if crops {
         Framing::ScreenDistance(COURSE_SIZE.1 * 0.5 / half_height)
     } else {
         Framing::Horizontal(2.0 * (half_height * COURSE_SIZE.0 / COURSE_SIZE.1).atan())
     };
-    Camera { eye: center + direction * 1.5 * diagonal, target: center, framing, ..Camera::default() }
+    Camera {
+        eye: center + direction * 1.5 * diagonal,
+        target: center,
+        framing,
+        ..Camera::default()
+    }
 }
 
 fn course_angles(fov: &FieldOfView) -> (f64, f64) {

@@ -42,9 +42,17 @@ impl PreparedScene {
         let error = gamma(7) * ((b0 * a).abs() + (hit.b1 * b).abs() + (hit.b2 * c).abs());
         let (ab, ac) = ((b - a).as_dvec3(), (c - a).as_dvec3());
         let geometric_normal = ab.cross(ac).normalize_or(glam::DVec3::Z).as_vec3();
-        let shading_normal = self.corner_normals(hit.primitive).map_or(geometric_normal, |[n0, n1, n2]| {
-            (b0 * n0 + hit.b1 * n1 + hit.b2 * n2).normalize_or(geometric_normal)
-        });
-        SurfaceInteraction { point, error, geometric_normal, shading_normal, primitive: hit.primitive }
+        let shading_normal = self
+            .corner_normals(hit.primitive)
+            .map_or(geometric_normal, |[n0, n1, n2]| {
+                (b0 * n0 + hit.b1 * n1 + hit.b2 * n2).normalize_or(geometric_normal)
+            });
+        SurfaceInteraction {
+            point,
+            error,
+            geometric_normal,
+            shading_normal,
+            primitive: hit.primitive,
+        }
     }
 }

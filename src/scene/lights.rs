@@ -6,7 +6,8 @@ use super::emitters::EmittingRectangle;
 use super::{LightKind, Scene};
 use crate::geometry::Shapes;
 use crate::light::{
-    AreaDensity, AreaLight, AreaShape, DirectionalLight, EnvironmentLight, Light, LightSampler, PointLight, SpotLight,
+    AreaDensity, AreaLight, AreaShape, DirectionalLight, EnvironmentLight, Light, LightSampler,
+    PointLight, SpotLight,
 };
 use crate::math::Normalization;
 
@@ -24,7 +25,12 @@ pub(super) struct LightTable {
 
 impl LightTable {
     pub(super) fn new(course_compatible: bool) -> Self {
-        Self { lights: Vec::new(), sampled: Vec::new(), environment: None, course_compatible }
+        Self {
+            lights: Vec::new(),
+            sampled: Vec::new(),
+            environment: None,
+            course_compatible,
+        }
     }
 
     /// A light that rays can meet. The course's program never samples those.
@@ -59,7 +65,8 @@ impl LightTable {
         };
         // Light that falls off as 1/r depends on the unit of r: the file's.
         let radiance = rectangle.radiance / normalization.scale as f32;
-        let light = AreaLight::new(shapes, shape, radiance, false).with_density(AreaDensity::Course);
+        let light =
+            AreaLight::new(shapes, shape, radiance, false).with_density(AreaDensity::Course);
         self.add_sampled(Light::Area(light));
     }
 
@@ -68,7 +75,11 @@ impl LightTable {
         if self.course_compatible {
             return LightSampler::new(&[]);
         }
-        let powers: Vec<f32> = self.lights.iter().map(|light| light.power(shapes, SCENE_RADIUS)).collect();
+        let powers: Vec<f32> = self
+            .lights
+            .iter()
+            .map(|light| light.power(shapes, SCENE_RADIUS))
+            .collect();
         LightSampler::new(&powers)
     }
 }
@@ -91,9 +102,16 @@ pub(super) fn light_nodes(
             LightKind::Area { .. } => {}
             LightKind::Point { intensity } => {
                 let intensity = intensity * intensity_scale;
-                table.add_sampled(Light::Point(PointLight { position, intensity }));
+                table.add_sampled(Light::Point(PointLight {
+                    position,
+                    intensity,
+                }));
             }
-            LightKind::Spot { intensity, cone_angle, exponent } => {
+            LightKind::Spot {
+                intensity,
+                cone_angle,
+                exponent,
+            } => {
                 table.add_sampled(Light::Spot(SpotLight {
                     position,
                     axis,
@@ -105,11 +123,17 @@ pub(super) fn light_nodes(
             LightKind::Directional { irradiance } => {
                 let to_light = if course_compatible {
                     // The course adds the node's translation to the direction.
-                    -(forward + place.transform_point3(DVec3::ZERO)).try_normalize().unwrap_or(DVec3::NEG_Y).as_vec3()
+                    -(forward + place.transform_point3(DVec3::ZERO))
+                        .try_normalize()
+                        .unwrap_or(DVec3::NEG_Y)
+                        .as_vec3()
                 } else {
                     -axis
                 };
-                table.add_sampled(Light::Directional(DirectionalLight { to_light, irradiance }));
+                table.add_sampled(Light::Directional(DirectionalLight {
+                    to_light,
+                    irradiance,
+                }));
             }
         }
     }

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use glam::{DMat3, DMat4, DVec3, Vec3};
 
-use super::emitters::{EmittingRectangle, Emitters, SurfaceEmission, emitters};
+use super::emitters::{Emitters, EmittingRectangle, SurfaceEmission, emitters};
 use super::lights::{LightTable, light_nodes};
 use super::prepared::{DARK, FLAT, Owner, PreparedMaterial};
 use super::shading_normals::{NormalRule, corner_normals};
@@ -38,17 +38,37 @@ pub fn prepare(
         assembly.place(index, instance);
     }
     assembly.place_rectangles();
-    let Assembly { normalization, shapes, owners, owner_of, smooth, corner_normals, mut table, emitters, .. } =
-        assembly.into_primitive_order();
-    light_nodes(scene, settings.course_compatible, &normalization, &mut table);
+    let Assembly {
+        normalization,
+        shapes,
+        owners,
+        owner_of,
+        smooth,
+        corner_normals,
+        mut table,
+        emitters,
+        ..
+    } = assembly.into_primitive_order();
+    light_nodes(
+        scene,
+        settings.course_compatible,
+        &normalization,
+        &mut table,
+    );
     let sampler = table.sampler(&shapes);
-    let aggregate =
-        Aggregate::build_with(shapes, settings.bvh, &|fraction| progress("building the BVH", fraction))?;
+    let aggregate = Aggregate::build_with(shapes, settings.bvh, &|fraction| {
+        progress("building the BVH", fraction)
+    })?;
     let instance_names = scene
         .instances
         .iter()
         .map(|instance| instance.name.clone())
-        .chain(emitters.rectangles.iter().map(|rectangle| rectangle.name.clone()))
+        .chain(
+            emitters
+                .rectangles
+                .iter()
+                .map(|rectangle| rectangle.name.clone()),
+        )
         .collect();
     Some(PreparedScene {
         normalization,
@@ -70,11 +90,17 @@ pub fn prepare(
 
 /// The scene's materials, and a black one for the surfaces of area lights.
 fn materials(scene: &Scene) -> Vec<PreparedMaterial> {
-    let black = PreparedMaterial { name: "area light".to_owned(), bsdf: Bsdf::Diffuse(Diffuse::new(Rgb::ZERO)) };
+    let black = PreparedMaterial {
+        name: "area light".to_owned(),
+        bsdf: Bsdf::Diffuse(Diffuse::new(Rgb::ZERO)),
+    };
     scene
         .materials
         .iter()
-        .map(|material| PreparedMaterial { name: material.name.clone(), bsdf: bsdf(&material.surface) })
+        .map(|material| PreparedMaterial {
+            name: material.name.clone(),
+            bsdf: bsdf(&material.surface),
+        })
         .chain([black])
         .collect()
 }
@@ -83,10 +109,14 @@ fn bsdf(surface: &Surface) -> Bsdf {
     match *surface {
         Surface::Diffuse { reflectance } => Bsdf::Diffuse(Diffuse::new(reflectance)),
         Surface::Mirror { reflectance } => Bsdf::Mirror(Mirror::new(reflectance)),
-        Surface::Refraction { transmittance, ior } => Bsdf::Refraction(Refraction::new(transmittance, ior)),
-        Surface::Glass { reflectance, transmittance, ior } => {
-            Bsdf::Glass(Glass::new(reflectance, transmittance, ior))
+        Surface::Refraction { transmittance, ior } => {
+            Bsdf::Refraction(Refraction::new(transmittance, ior))
         }
+        Surface::Glass {
+            reflectance,
+            transmittance,
+            ior,
+        } => Bsdf::Glass(Glass::new(reflectance, transmittance, ior)),
         Surface::Microfacet { alpha, eta, k } => Bsdf::Microfacet(Microfacet::new(alpha, eta, k)),
     }
 }
@@ -112,16 +142,27 @@ struct Assembly<'a> {
 impl<'a> Assembly<'a> {
     fn new(scene: &'a Scene, course_compatible: bool) -> Self {
         let emitters = emitters(scene, course_compatible);
-        let (mut min, mut max) = scene.bounds().unwrap_or((DVec3::splat(-0.5), DVec3::splat(0.5)));
+        let (mut min, mut max) = scene
+            .bounds()
+            .unwrap_or((DVec3::splat(-0.5), DVec3::splat(0.5)));
         for r in emitters.rectangles.iter().filter(|_| !course_compatible) {
-            for corner in [r.corner, r.corner + r.edge_u, r.corner + r.edge_v, r.corner + r.edge_u + r.edge_v] {
+            for corner in [
+                r.corner,
+                r.corner + r.edge_u,
+                r.corner + r.edge_v,
+                r.corner + r.edge_u + r.edge_v,
+            ] {
                 min = min.min(corner);
                 max = max.max(corner);
             }
         }
         Self {
             scene,
-            normal_rule: if course_compatible { NormalRule::AlwaysSmooth } else { NormalRule::File },
+            normal_rule: if course_compatible {
+                NormalRule::AlwaysSmooth
+            } else {
+                NormalRule::File
+            },
             normalization: Normalization::fit(min, max),
             emitters,
             shapes: Shapes::default(),
@@ -137,7 +178,11 @@ impl<'a> Assembly<'a> {
 
     fn own(&mut self, material: usize, instance: usize) -> u32 {
         let first = self.shapes.triangles.len() as u32;
-        let owner = Owner { material: material as u32, light: DARK, instance: instance as u32 };
+        let owner = Owner {
+            material: material as u32,
+            light: DARK,
+            instance: instance as u32,
+        };
         self.owners.push((first, owner));
         self.owners.len() as u32 - 1
     }
@@ -148,14 +193,21 @@ impl<'a> Assembly<'a> {
             Geometry::Mesh(mesh) => self.place_mesh(index, instance, mesh),
             Geometry::Sphere { radius, .. } => {
                 let to_world = instance.world_from_object;
-                let center = self.normalization.point_to_scene(to_world.transform_point3(DVec3::ZERO));
+                let center = self
+                    .normalization
+                    .point_to_scene(to_world.transform_point3(DVec3::ZERO));
                 // As in the course, the x scale decides.
-                let radius = radius * to_world.x_axis.truncate().length() * self.normalization.scale;
+                let radius =
+                    radius * to_world.x_axis.truncate().length() * self.normalization.scale;
                 let owner = self.own(instance.materials.first().copied().unwrap_or(0), index);
                 if let Some(&emission) = self.emitters.surfaces.get(&(index, 0)) {
-                    self.sphere_lights.push((self.shapes.spheres.len() as u32, emission, owner));
+                    self.sphere_lights
+                        .push((self.shapes.spheres.len() as u32, emission, owner));
                 }
-                self.shapes.spheres.push(Sphere { center, radius: radius as f32 });
+                self.shapes.spheres.push(Sphere {
+                    center,
+                    radius: radius as f32,
+                });
                 self.sphere_owner_of.push(owner);
             }
         }
@@ -164,7 +216,12 @@ impl<'a> Assembly<'a> {
     fn place_mesh(&mut self, index: usize, instance: &Instance, mesh: &Mesh) {
         let placed = PlacedMesh::new(mesh, instance.world_from_object, self.normal_rule);
         let base = self.shapes.positions.len() as u32;
-        self.shapes.positions.extend(placed.positions.iter().map(|&p| self.normalization.point_to_scene(p)));
+        self.shapes.positions.extend(
+            placed
+                .positions
+                .iter()
+                .map(|&p| self.normalization.point_to_scene(p)),
+        );
         let slots: Vec<Slot> = (0..instance.materials.len().max(1))
             .map(|slot| Slot {
                 owner: self.own(instance.materials.get(slot).copied().unwrap_or(0), index),
@@ -176,11 +233,16 @@ impl<'a> Assembly<'a> {
         for (face, triangle) in mesh.triangles.iter().enumerate() {
             let slot_index = usize::from(triangle.material_slot).min(slots.len() - 1);
             let slot = &mut slots[slot_index];
-            let turns = slot.emission.is_some_and(|e| e.towards.is_some_and(|d| d.dot(placed.face_normals[face]) < 0.0));
+            let turns = slot.emission.is_some_and(|e| {
+                e.towards
+                    .is_some_and(|d| d.dot(placed.face_normals[face]) < 0.0)
+            });
             let flip = turns != placed.is_mirrored;
             let [a, b, c] = triangle.corners.map(|corner| base + corner.position);
             slot.primitives.push(self.shapes.triangles.len() as u32);
-            self.shapes.triangles.push(if flip { [a, c, b] } else { [a, b, c] });
+            self.shapes
+                .triangles
+                .push(if flip { [a, c, b] } else { [a, b, c] });
             self.owner_of.push(slot.owner);
             self.push_normals(placed.corner_normals[face], flip, turns);
         }
@@ -190,7 +252,9 @@ impl<'a> Assembly<'a> {
     }
 
     fn push_normals(&mut self, normals: Option<[Vec3; 3]>, swaps_corners: bool, turns: bool) {
-        let Some([a, b, c]) = normals else { return self.smooth.push(FLAT) };
+        let Some([a, b, c]) = normals else {
+            return self.smooth.push(FLAT);
+        };
         let sign = if turns { -1.0 } else { 1.0 };
         self.smooth.push(self.corner_normals.len() as u32);
         let (b, c) = if swaps_corners { (c, b) } else { (b, c) };
@@ -198,8 +262,12 @@ impl<'a> Assembly<'a> {
     }
 
     fn add_surface_light(&mut self, slot: Slot) {
-        let Some(emission) = slot.emission.filter(|_| !slot.primitives.is_empty()) else { return };
-        let shape = AreaShape::Triangles { primitives: slot.primitives };
+        let Some(emission) = slot.emission.filter(|_| !slot.primitives.is_empty()) else {
+            return;
+        };
+        let shape = AreaShape::Triangles {
+            primitives: slot.primitives,
+        };
         let light = AreaLight::new(&self.shapes, shape, emission.radiance, emission.two_sided);
         self.owners[slot.owner as usize].1.light = self.table.add_surface(Light::Area(light));
     }
@@ -209,21 +277,45 @@ impl<'a> Assembly<'a> {
         let rectangles = self.emitters.rectangles.clone();
         for (number, rectangle) in rectangles.iter().enumerate() {
             if self.table.course_compatible {
-                self.table.add_course_rectangle(rectangle, &self.normalization, &self.shapes);
+                self.table
+                    .add_course_rectangle(rectangle, &self.normalization, &self.shapes);
                 continue;
             }
-            let owner = self.own(self.scene.materials.len(), self.scene.instances.len() + number);
+            let owner = self.own(
+                self.scene.materials.len(),
+                self.scene.instances.len() + number,
+            );
             let primitives = self.push_rectangle(rectangle, owner);
-            let emission = SurfaceEmission { radiance: rectangle.radiance, two_sided: false, towards: None };
-            self.add_surface_light(Slot { owner, emission: Some(emission), primitives });
+            let emission = SurfaceEmission {
+                radiance: rectangle.radiance,
+                two_sided: false,
+                towards: None,
+            };
+            self.add_surface_light(Slot {
+                owner,
+                emission: Some(emission),
+                primitives,
+            });
         }
     }
 
     fn push_rectangle(&mut self, rectangle: &EmittingRectangle, owner: u32) -> Vec<u32> {
         let base = self.shapes.positions.len() as u32;
-        let EmittingRectangle { corner, edge_u, edge_v, .. } = *rectangle;
-        let corners = [corner, corner + edge_u, corner + edge_u + edge_v, corner + edge_v];
-        self.shapes.positions.extend(corners.map(|p| self.normalization.point_to_scene(p)));
+        let EmittingRectangle {
+            corner,
+            edge_u,
+            edge_v,
+            ..
+        } = *rectangle;
+        let corners = [
+            corner,
+            corner + edge_u,
+            corner + edge_u + edge_v,
+            corner + edge_v,
+        ];
+        self.shapes
+            .positions
+            .extend(corners.map(|p| self.normalization.point_to_scene(p)));
         let first = self.shapes.triangles.len() as u32;
         for triangle in [[0, 1, 2], [0, 2, 3]] {
             self.shapes.triangles.push(triangle.map(|i| base + i));
@@ -274,18 +366,33 @@ impl PlacedMesh {
         let linear = DMat3::from_mat4(world_from_object);
         let determinant = linear.determinant();
         let is_mirrored = determinant < 0.0;
-        let positions: Vec<DVec3> = mesh.positions.iter().map(|&p| world_from_object.transform_point3(p)).collect();
+        let positions: Vec<DVec3> = mesh
+            .positions
+            .iter()
+            .map(|&p| world_from_object.transform_point3(p))
+            .collect();
         let side = if is_mirrored { -1.0 } else { 1.0 };
         let face_normals: Vec<DVec3> = mesh
             .triangles
             .iter()
             .map(|triangle| {
-                let [a, b, c] = triangle.corners.map(|corner| positions[corner.position as usize]);
+                let [a, b, c] = triangle
+                    .corners
+                    .map(|corner| positions[corner.position as usize]);
                 (b - a).cross(c - a) * side
             })
             .collect();
-        let normal_to_world = if determinant == 0.0 { linear } else { linear.inverse().transpose() };
+        let normal_to_world = if determinant == 0.0 {
+            linear
+        } else {
+            linear.inverse().transpose()
+        };
         let corner_normals = corner_normals(mesh, &face_normals, normal_to_world, rule);
-        Self { positions, face_normals, corner_normals, is_mirrored }
+        Self {
+            positions,
+            face_normals,
+            corner_normals,
+            is_mirrored,
+        }
     }
 }

@@ -96,7 +96,12 @@ impl PreparedScene {
         let albedo = self.bsdf(primitive).albedo();
         match self.light_of(primitive) {
             Some(light) if albedo == Rgb::ZERO => {
-                let hit = LightHit { point: Vec3::ZERO, normal: Vec3::Z, distance: 1.0, primitive };
+                let hit = LightHit {
+                    point: Vec3::ZERO,
+                    normal: Vec3::Z,
+                    distance: 1.0,
+                    primitive,
+                };
                 let emitted = self.light(light).radiance_at(hit, Vec3::NEG_Z);
                 emitted / emitted.max_element().max(1.0)
             }
@@ -121,32 +126,51 @@ impl PreparedScene {
 
     /// Radiance that the surface sends along `wo`.
     pub fn emitted(&self, surface: &SurfaceInteraction, wo: Vec3) -> Rgb {
-        let Some(light) = self.light_of(surface.primitive) else { return Rgb::ZERO };
+        let Some(light) = self.light_of(surface.primitive) else {
+            return Rgb::ZERO;
+        };
         self.light(light).radiance_at(light_hit(surface, 0.0), -wo)
     }
 
     /// Radiance from infinity along a ray in `direction` that met nothing. Camera rays do not see
     /// the ambient part.
     pub fn environment_radiance(&self, direction: Vec3, is_camera_ray: bool) -> Rgb {
-        self.environment
-            .map_or(Rgb::ZERO, |light| self.light(light).radiance_from_infinity(direction, is_camera_ray))
+        self.environment.map_or(Rgb::ZERO, |light| {
+            self.light(light)
+                .radiance_from_infinity(direction, is_camera_ray)
+        })
     }
 
     /// Solid-angle density with which [`Self::choose_light`] and light sampling from `from` make
     /// the unit `direction` in which `surface` lies at `distance`.
-    pub fn light_pdf(&self, from: Vec3, direction: Vec3, surface: &SurfaceInteraction, distance: f32) -> f32 {
-        let Some(light) = self.light_of(surface.primitive) else { return 0.0 };
+    pub fn light_pdf(
+        &self,
+        from: Vec3,
+        direction: Vec3,
+        surface: &SurfaceInteraction,
+        distance: f32,
+    ) -> f32 {
+        let Some(light) = self.light_of(surface.primitive) else {
+            return 0.0;
+        };
         let pmf = self.light_pmf(light);
         if pmf == 0.0 {
             return 0.0;
         }
-        pmf * self.light(light).pdf(self.shapes(), from, direction, light_hit(surface, distance))
+        pmf * self
+            .light(light)
+            .pdf(self.shapes(), from, direction, light_hit(surface, distance))
     }
 
     /// The same for the environment.
     pub fn environment_pdf(&self, from: Vec3, direction: Vec3) -> f32 {
-        let Some(light) = self.environment else { return 0.0 };
-        self.light_pmf(light) * self.light(light).pdf(self.shapes(), from, direction, LightHit::INFINITE)
+        let Some(light) = self.environment else {
+            return 0.0;
+        };
+        self.light_pmf(light)
+            * self
+                .light(light)
+                .pdf(self.shapes(), from, direction, LightHit::INFINITE)
     }
 
     /// Light number `light`.

@@ -29,8 +29,11 @@ pub(super) fn corner_normals(
     normal_to_world: DMat3,
     rule: NormalRule,
 ) -> Vec<Option<[Vec3; 3]>> {
-    let needs_smoothing =
-        rule == NormalRule::AlwaysSmooth || mesh.triangles.iter().any(|t| t.corners.iter().any(|c| !has_normal(mesh, *c)));
+    let needs_smoothing = rule == NormalRule::AlwaysSmooth
+        || mesh
+            .triangles
+            .iter()
+            .any(|t| t.corners.iter().any(|c| !has_normal(mesh, *c)));
     let around = needs_smoothing.then(|| FacesAroundVertices::new(mesh));
     mesh.triangles
         .iter()
@@ -42,13 +45,18 @@ pub(super) fn corner_normals(
                     let world = normal_to_world * mesh.normals[corner.normal as usize].as_dvec3();
                     return world.try_normalize().unwrap_or(flat);
                 }
-                around.as_ref().map_or(flat, |around| around.smooth(corner.position, face_normals, flat, rule))
+                around.as_ref().map_or(flat, |around| {
+                    around.smooth(corner.position, face_normals, flat, rule)
+                })
             });
             // Files whose winding contradicts their normals mean the side of their normals to be
             // shaded; the geometric normal keeps the winding, so the shading normal follows it.
             let corners = corners.map(|n| if n.dot(flat) < 0.0 { -n } else { n }.as_vec3());
             let flat = flat.as_vec3();
-            corners.iter().any(|n| n.dot(flat) < FLAT_COSINE).then_some(corners)
+            corners
+                .iter()
+                .any(|n| n.dot(flat) < FLAT_COSINE)
+                .then_some(corners)
         })
         .collect()
 }
@@ -93,7 +101,9 @@ impl FacesAroundVertices {
         let sum: DVec3 = faces
             .iter()
             .map(|&face| face_normals[face as usize])
-            .filter(|n| rule == NormalRule::AlwaysSmooth || n.dot(flat) >= CREASE_COSINE * n.length())
+            .filter(|n| {
+                rule == NormalRule::AlwaysSmooth || n.dot(flat) >= CREASE_COSINE * n.length()
+            })
             .sum();
         sum.try_normalize().unwrap_or(flat)
     }
@@ -106,13 +116,22 @@ mod tests {
 
     /// Two triangles that share the edge from the origin along z and bend by `degrees`.
     fn hinge(degrees: f64) -> Mesh {
-        let corner = |position| Corner { position, normal: Corner::NO_NORMAL };
+        let corner = |position| Corner {
+            position,
+            normal: Corner::NO_NORMAL,
+        };
         let (sin, cos) = degrees.to_radians().sin_cos();
         Mesh {
             positions: vec![DVec3::ZERO, DVec3::Z, DVec3::X, DVec3::new(-cos, sin, 0.0)],
             triangles: vec![
-                MeshTriangle { corners: [0, 1, 2].map(corner), material_slot: 0 },
-                MeshTriangle { corners: [1, 0, 3].map(corner), material_slot: 0 },
+                MeshTriangle {
+                    corners: [0, 1, 2].map(corner),
+                    material_slot: 0,
+                },
+                MeshTriangle {
+                    corners: [1, 0, 3].map(corner),
+                    material_slot: 0,
+                },
             ],
             ..Mesh::default()
         }
@@ -134,7 +153,10 @@ mod tests {
     fn edges_below_sixty_degrees_are_smooth_and_others_flat() {
         let smooth = normals(&hinge(50.0), NormalRule::File);
         let (first, second) = (smooth[0].expect("smooth"), smooth[1].expect("smooth"));
-        assert!((first[0] - second[1]).length() < 1e-6, "one normal at the shared vertex");
+        assert!(
+            (first[0] - second[1]).length() < 1e-6,
+            "one normal at the shared vertex"
+        );
         assert_eq!(normals(&hinge(70.0), NormalRule::File), vec![None, None]);
         assert!(normals(&hinge(70.0), NormalRule::AlwaysSmooth)[0].is_some());
     }

@@ -19,11 +19,17 @@ pub(super) fn close_pixels(film: &mut Film, adaptive: &Adaptive, mode: Mode) -> 
             close_agreed(film, &passed);
         }
     }
-    film.tiles().iter().all(|tile| tile.pixels().iter().all(PixelStats::is_closed))
+    film.tiles()
+        .iter()
+        .all(|tile| tile.pixels().iter().all(PixelStats::is_closed))
 }
 
 fn close_where(film: &mut Film, is_done: impl Fn(&PixelStats) -> bool) {
-    for pixel in film.tiles_mut().iter_mut().flat_map(|tile| tile.pixels_mut()) {
+    for pixel in film
+        .tiles_mut()
+        .iter_mut()
+        .flat_map(|tile| tile.pixels_mut())
+    {
         if !pixel.is_closed() && is_done(pixel) {
             pixel.close();
         }
@@ -32,7 +38,9 @@ fn close_where(film: &mut Film, is_done: impl Fn(&PixelStats) -> bool) {
 
 /// The course's rule: 1.96 · sqrt(σ²/n) <= tolerance · mean, of the luminance.
 fn passes_course(pixel: &PixelStats, tolerance: f32) -> bool {
-    let Some((mean, variance)) = pixel.luminance() else { return false };
+    let Some((mean, variance)) = pixel.luminance() else {
+        return false;
+    };
     QUANTILE_95 * (variance / f64::from(pixel.count())).sqrt() <= f64::from(tolerance) * mean
 }
 
@@ -45,7 +53,13 @@ fn pooled_test(film: &Film, tolerance: f32, least: u32) -> Vec<bool> {
     let mut passed = Vec::with_capacity(flat.len());
     for y in 0..height {
         for x in 0..width {
-            passed.push(neighbourhood_passes(&flat, (width, height), (x, y), f64::from(tolerance), least));
+            passed.push(neighbourhood_passes(
+                &flat,
+                (width, height),
+                (x, y),
+                f64::from(tolerance),
+                least,
+            ));
         }
     }
     passed
@@ -69,7 +83,9 @@ fn neighbourhood_passes(
     for row in y.saturating_sub(1)..(y + 2).min(height) {
         for column in x.saturating_sub(1)..(x + 2).min(width) {
             let pixel = &flat[row * width + column];
-            let Some(v) = pixel.variance() else { return false };
+            let Some(v) = pixel.variance() else {
+                return false;
+            };
             for c in 0..3 {
                 mean[c] += pixel.mean()[c];
                 variance[c] += v[c];
@@ -91,8 +107,9 @@ fn close_agreed(film: &mut Film, passed: &[bool]) {
         for index in 0..tile.pixels().len() {
             let (x, y) = tile.position(index);
             let (x, y) = ((x - region.x) as usize, (y - region.y) as usize);
-            let all_agree = (y.saturating_sub(1)..(y + 2).min(height))
-                .all(|row| (x.saturating_sub(1)..(x + 2).min(width)).all(|column| passed[row * width + column]));
+            let all_agree = (y.saturating_sub(1)..(y + 2).min(height)).all(|row| {
+                (x.saturating_sub(1)..(x + 2).min(width)).all(|column| passed[row * width + column])
+            });
             if all_agree {
                 tile.pixels_mut()[index].close();
             }
@@ -124,7 +141,12 @@ mod tests {
     use crate::sampling::{PathSampler, Slot};
 
     fn film_of(width: u32, height: u32) -> Film {
-        Film::new(Region { x: 3, y: 5, width, height })
+        Film::new(Region {
+            x: 3,
+            y: 5,
+            width,
+            height,
+        })
     }
 
     fn add_bernoulli(film: &mut Film, samples: std::ops::Range<u32>, p: f32) {
@@ -145,7 +167,11 @@ mod tests {
 
     fn bias_at_the_end(rule: AdaptiveRule, p: f32) -> f64 {
         let mut film = film_of(60, 50);
-        let adaptive = Adaptive { batch: 64, tolerance: 0.05, rule };
+        let adaptive = Adaptive {
+            batch: 64,
+            tolerance: 0.05,
+            rule,
+        };
         for batch in 0..200 {
             add_bernoulli(&mut film, batch * 64..(batch + 1) * 64, p);
             if close_pixels(&mut film, &adaptive, Mode::Best) {
@@ -169,9 +195,16 @@ mod tests {
     #[test]
     fn black_pixels_end_by_the_floor() {
         let mut film = film_of(40, 40);
-        let adaptive = Adaptive { batch: 32, tolerance: 0.05, rule: AdaptiveRule::Neighbourhood };
+        let adaptive = Adaptive {
+            batch: 32,
+            tolerance: 0.05,
+            rule: AdaptiveRule::Neighbourhood,
+        };
         add_bernoulli(&mut film, 0..32, 0.0);
-        assert!(!close_pixels(&mut film, &adaptive, Mode::Best), "too few samples");
+        assert!(
+            !close_pixels(&mut film, &adaptive, Mode::Best),
+            "too few samples"
+        );
         add_bernoulli(&mut film, 32..64, 0.0);
         assert!(close_pixels(&mut film, &adaptive, Mode::Best));
     }
@@ -186,7 +219,10 @@ mod tests {
             }
         }
         for (i, pixel) in flattened(&film).iter().enumerate() {
-            assert_eq!(pixel.mean()[0..2], [3.0 + (i % 70) as f64, 5.0 + (i / 70) as f64]);
+            assert_eq!(
+                pixel.mean()[0..2],
+                [3.0 + (i % 70) as f64, 5.0 + (i / 70) as f64]
+            );
         }
     }
 }

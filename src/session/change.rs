@@ -21,7 +21,10 @@ impl Change {
             return Self::None;
         }
         let (a, b) = (&old.settings, &new.settings);
-        if !Arc::ptr_eq(&old.scene, &new.scene) || a.bvh != b.bvh || a.course_compatible != b.course_compatible {
+        if !Arc::ptr_eq(&old.scene, &new.scene)
+            || a.bvh != b.bvh
+            || a.course_compatible != b.course_compatible
+        {
             return Self::Scene;
         }
         // The parts of the settings that do not touch the film are made equal; what still differs does.
@@ -29,7 +32,11 @@ impl Change {
         film_settings.view = a.view;
         film_settings.stop = a.stop;
         film_settings.threads = a.threads;
-        if old.camera != new.camera || *a != film_settings { Self::Film } else { Self::Continue }
+        if old.camera != new.camera || *a != film_settings {
+            Self::Film
+        } else {
+            Self::Continue
+        }
     }
 }
 
@@ -54,11 +61,17 @@ mod tests {
         };
         assert_eq!(with(|_| ()), Change::None);
         assert_eq!(with(|j| j.settings.view = View::Noise), Change::Continue);
-        assert_eq!(with(|j| j.settings.stop.samples_per_pixel = Some(9)), Change::Continue);
+        assert_eq!(
+            with(|j| j.settings.stop.samples_per_pixel = Some(9)),
+            Change::Continue
+        );
         assert_eq!(with(|j| j.settings.threads = 3), Change::Continue);
         assert_eq!(with(|j| j.settings.seed = 1), Change::Film);
         assert_eq!(with(|j| j.camera.lens_radius = 0.1), Change::Film);
         assert_eq!(with(|j| j.settings.bvh.leaf_size = 9), Change::Scene);
-        assert_eq!(with(|j| j.scene = Arc::new(Scene::default())), Change::Scene);
+        assert_eq!(
+            with(|j| j.scene = Arc::new(Scene::default())),
+            Change::Scene
+        );
     }
 }

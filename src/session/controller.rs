@@ -33,7 +33,10 @@ pub(super) struct Shared {
 
 impl std::fmt::Debug for Shared {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Shared").field("options", &self.options).field("wish", &self.wish).finish_non_exhaustive()
+        f.debug_struct("Shared")
+            .field("options", &self.options)
+            .field("wish", &self.wish)
+            .finish_non_exhaustive()
     }
 }
 

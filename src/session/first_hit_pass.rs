@@ -24,7 +24,12 @@ pub(super) fn first_hit_pass(
                 return false;
             }
             for (x, out) in row.iter_mut().enumerate() {
-                *out = first_hit(scene, camera, view, Vec2::new(x as f32 + 0.5, y as f32 + 0.5));
+                *out = first_hit(
+                    scene,
+                    camera,
+                    view,
+                    Vec2::new(x as f32 + 0.5, y as f32 + 0.5),
+                );
             }
             true
         })

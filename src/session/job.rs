@@ -18,7 +18,9 @@ pub struct RenderJob {
 
 impl PartialEq for RenderJob {
     fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.scene, &other.scene) && self.camera == other.camera && self.settings == other.settings
+        Arc::ptr_eq(&self.scene, &other.scene)
+            && self.camera == other.camera
+            && self.settings == other.settings
     }
 }
 

@@ -42,7 +42,10 @@ impl RenderSession {
             .name("softbox-session".to_owned())
             .spawn(move || controller::run(&for_thread))
             .expect("the system refuses one more thread");
-        Self { shared, thread: Some(thread) }
+        Self {
+            shared,
+            thread: Some(thread),
+        }
     }
 
     /// Asks for the picture of `job`. Cheap, meant to be called every frame: a job equal to the

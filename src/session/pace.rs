@@ -31,7 +31,9 @@ pub(super) fn preview_step(pixels: f64, rate: f64) -> u32 {
 pub(super) fn next_target(settings: &RenderSettings, done: u32, last: Option<(u32, f64)>) -> u32 {
     let step = match last {
         None => 1,
-        Some((samples, seconds)) if seconds * 2.0 <= PASS_AIM => (samples * 2).clamp(1, MOST_PER_PASS),
+        Some((samples, seconds)) if seconds * 2.0 <= PASS_AIM => {
+            (samples * 2).clamp(1, MOST_PER_PASS)
+        }
         Some((samples, seconds)) if seconds > PASS_AIM * 1.5 => (samples / 2).max(1),
         Some((samples, _)) => samples.max(1),
     };
@@ -54,19 +56,30 @@ pub(super) struct Progress {
 /// Seconds until the first of the stop rules ends the render; `None` without rules and while the
 /// figure would jump about.
 pub(super) fn eta_seconds(settings: &RenderSettings, progress: &Progress) -> Option<f64> {
-    let Progress { seconds, samples_mean, relative_error } = *progress;
+    let Progress {
+        seconds,
+        samples_mean,
+        relative_error,
+    } = *progress;
     if seconds < ETA_AFTER || samples_mean < 2.0 {
         return None;
     }
     let per_sample = seconds / samples_mean;
-    let by_samples = settings.stop.samples_per_pixel.map(|n| (f64::from(n) - samples_mean) * per_sample);
+    let by_samples = settings
+        .stop
+        .samples_per_pixel
+        .map(|n| (f64::from(n) - samples_mean) * per_sample);
     let by_seconds = settings.stop.seconds.map(|limit| limit - seconds);
     // The error falls with the root of the number of samples.
     let by_error = settings.stop.relative_error.and_then(|aim| {
         let ratio = relative_error? / aim.max(1e-9);
         Some((ratio * ratio - 1.0) * seconds)
     });
-    [by_samples, by_seconds, by_error].into_iter().flatten().reduce(f64::min).map(|eta| eta.max(0.0))
+    [by_samples, by_seconds, by_error]
+        .into_iter()
+        .flatten()
+        .reduce(f64::min)
+        .map(|eta| eta.max(0.0))
 }
 
 #[cfg(test)]
@@ -85,14 +98,21 @@ mod tests {
     #[test]
     fn passes_grow_to_their_aim_and_never_skip_a_decision_or_the_end() {
         let mut settings = RenderSettings {
-            stop: StopRule { samples_per_pixel: Some(100), ..StopRule::default() },
+            stop: StopRule {
+                samples_per_pixel: Some(100),
+                ..StopRule::default()
+            },
             ..RenderSettings::default()
         };
         assert_eq!(next_target(&settings, 0, None), 1);
         assert_eq!(next_target(&settings, 1, Some((1, 0.001))), 3);
         assert_eq!(next_target(&settings, 8, Some((8, 1.0))), 12);
         assert_eq!(next_target(&settings, 90, Some((64, 0.01))), 100);
-        settings.adaptive = Some(Adaptive { batch: 32, tolerance: 0.05, rule: AdaptiveRule::Course });
+        settings.adaptive = Some(Adaptive {
+            batch: 32,
+            tolerance: 0.05,
+            rule: AdaptiveRule::Course,
+        });
         assert_eq!(next_target(&settings, 30, Some((64, 0.01))), 32);
         assert_eq!(next_target(&settings, 32, Some((64, 0.01))), 64);
     }
@@ -100,12 +120,25 @@ mod tests {
     #[test]
     fn the_eta_is_hidden_at_first_and_follows_the_first_rule_to_end() {
         let mut settings = RenderSettings::default();
-        let progress = Progress { seconds: 10.0, samples_mean: 50.0, relative_error: Some(0.02) };
+        let progress = Progress {
+            seconds: 10.0,
+            samples_mean: 50.0,
+            relative_error: Some(0.02),
+        };
         assert_eq!(eta_seconds(&settings, &progress), None);
         settings.stop.samples_per_pixel = Some(100);
         assert_eq!(eta_seconds(&settings, &progress), Some(10.0));
         settings.stop.relative_error = Some(0.016);
         assert!(eta_seconds(&settings, &progress).is_some_and(|eta| (eta - 5.625).abs() < 1e-9));
-        assert_eq!(eta_seconds(&settings, &Progress { seconds: 0.5, ..progress }), None);
+        assert_eq!(
+            eta_seconds(
+                &settings,
+                &Progress {
+                    seconds: 0.5,
+                    ..progress
+                }
+            ),
+            None
+        );
     }
 }

@@ -53,7 +53,10 @@ fn next_batch(tile: &Tile, target: u32, ids: &mut Vec<PathId>) -> bool {
             let sample = pixel.count().saturating_add(round);
             if !pixel.is_closed() && sample < target {
                 let (x, y) = tile.position(index);
-                ids.push(PathId { pixel: [x, y], sample });
+                ids.push(PathId {
+                    pixel: [x, y],
+                    sample,
+                });
             }
         }
         let added = ids.len() - before;

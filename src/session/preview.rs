@@ -30,22 +30,41 @@ impl Preview {
 
     fn new(size: [u32; 2], step: u32) -> Self {
         let step = step.clamp(1, MAX_PREVIEW_STEP);
-        let (width, height) = (size[0].div_ceil(step) as usize, size[1].div_ceil(step) as usize);
-        Self { width, height, step, pixels: vec![Rgb::ZERO; width * height] }
+        let (width, height) = (
+            size[0].div_ceil(step) as usize,
+            size[1].div_ceil(step) as usize,
+        );
+        Self {
+            width,
+            height,
+            step,
+            pixels: vec![Rgb::ZERO; width * height],
+        }
     }
 
     /// The pixel of the whole picture in the middle of square number `index`.
     fn pixel(&self, index: usize, size: [u32; 2]) -> [u32; 2] {
         let (x, y) = ((index % self.width) as u32, (index / self.width) as u32);
-        [(x * self.step + self.step / 2).min(size[0] - 1), (y * self.step + self.step / 2).min(size[1] - 1)]
+        [
+            (x * self.step + self.step / 2).min(size[0] - 1),
+            (y * self.step + self.step / 2).min(size[1] - 1),
+        ]
     }
 
     /// One path for each square. Not cancellable: a preview that every new camera cancels is never
     /// seen.
-    pub(super) fn render(workers: &Workers, tracer: &PathTracer<'_>, size: [u32; 2], step: u32) -> (Self, PathCounts) {
+    pub(super) fn render(
+        workers: &Workers,
+        tracer: &PathTracer<'_>,
+        size: [u32; 2],
+        step: u32,
+    ) -> (Self, PathCounts) {
         let mut preview = Self::new(size, step);
         let ids: Vec<PathId> = (0..preview.pixels.len())
-            .map(|index| PathId { pixel: preview.pixel(index, size), sample: 0 })
+            .map(|index| PathId {
+                pixel: preview.pixel(index, size),
+                sample: 0,
+            })
             .collect();
         let counts = workers.install(|| {
             preview
@@ -79,12 +98,19 @@ impl Preview {
         (size, step): ([u32; 2], u32),
     ) -> Self {
         let mut preview = Self::new(size, step);
-        let pixels: Vec<[u32; 2]> = (0..preview.pixels.len()).map(|index| preview.pixel(index, size)).collect();
+        let pixels: Vec<[u32; 2]> = (0..preview.pixels.len())
+            .map(|index| preview.pixel(index, size))
+            .collect();
         workers.install(|| {
-            preview.pixels.par_iter_mut().zip(&pixels).with_min_len(CHUNK).for_each(|(out, pixel)| {
-                let center = Vec2::new(pixel[0] as f32 + 0.5, pixel[1] as f32 + 0.5);
-                *out = first_hit(scene, camera, view, center);
-            });
+            preview
+                .pixels
+                .par_iter_mut()
+                .zip(&pixels)
+                .with_min_len(CHUNK)
+                .for_each(|(out, pixel)| {
+                    let center = Vec2::new(pixel[0] as f32 + 0.5, pixel[1] as f32 + 0.5);
+                    *out = first_hit(scene, camera, view, center);
+                });
         });
         preview
     }

@@ -19,7 +19,12 @@ pub(super) struct Caption<'a> {
 
 impl Caption<'_> {
     /// A picture of single values: a preview or a view of the first hit.
-    pub(super) fn plain(&self, (width, height): (usize, usize), pixels: Vec<Rgb>, is_preview: bool) -> Snapshot {
+    pub(super) fn plain(
+        &self,
+        (width, height): (usize, usize),
+        pixels: Vec<Rgb>,
+        is_preview: bool,
+    ) -> Snapshot {
         let settings = &self.job.settings;
         Snapshot {
             generation: self.generation,
@@ -52,19 +57,39 @@ impl Caption<'_> {
         let (width, height) = (settings.width as usize, settings.height as usize);
         let background = |x: u32, y: u32| backdrop.map_or(Rgb::ZERO, |preview| preview.at(x, y));
         let pixels = assemble(workers, film, (width, height), background, |pixel, x, y| {
-            if pixel.count() == 0 { background(x, y) } else { pixel.radiance() }
+            if pixel.count() == 0 {
+                background(x, y)
+            } else {
+                pixel.radiance()
+            }
         });
-        let covers_picture = film.region().width as usize == width && film.region().height as usize == height;
-        let is_uniform = covers_picture && summary.samples == u64::from(summary.most) * summary.pixels;
+        let covers_picture =
+            film.region().width as usize == width && film.region().height as usize == height;
+        let is_uniform =
+            covers_picture && summary.samples == u64::from(summary.most) * summary.pixels;
         let samples = if is_uniform {
             SampleCounts::Uniform(summary.most)
         } else {
-            SampleCounts::PerPixel(assemble(workers, film, (width, height), |_, _| 0, |pixel, _, _| pixel.count()))
+            SampleCounts::PerPixel(assemble(
+                workers,
+                film,
+                (width, height),
+                |_, _| 0,
+                |pixel, _, _| pixel.count(),
+            ))
         };
         let noise = (settings.view == View::Noise).then(|| {
-            assemble(workers, film, (width, height), |_, _| 0.0, |pixel, _, _| {
-                pixel.relative_squared_error().map_or(1.0, |e| e.sqrt() as f32)
-            })
+            assemble(
+                workers,
+                film,
+                (width, height),
+                |_, _| 0.0,
+                |pixel, _, _| {
+                    pixel
+                        .relative_squared_error()
+                        .map_or(1.0, |e| e.sqrt() as f32)
+                },
+            )
         });
         Snapshot {
             generation: self.generation,
@@ -98,26 +123,34 @@ fn assemble<T: Copy + Default + Send>(
     let columns = region.width.div_ceil(TILE_SIZE) as usize;
     let mut out = vec![T::default(); width * height];
     workers.install(|| {
-        out.par_chunks_mut(width).with_min_len(16).enumerate().for_each(|(y, row)| {
-            let y = y as u32;
-            if !region.contains(region.x, y) {
-                row.iter_mut().enumerate().for_each(|(x, out)| *out = outside(x as u32, y));
-                return;
-            }
-            let right = (region.x + region.width) as usize;
-            for x in (0..region.x as usize).chain(right..width) {
-                row[x] = outside(x as u32, y);
-            }
-            let tile_row = ((y - region.y) / TILE_SIZE) as usize * columns;
-            for tile in &film.tiles()[tile_row..tile_row + columns] {
-                let area = tile.area();
-                let start = tile.index(area.x, y);
-                for (i, pixel) in tile.pixels()[start..start + area.width as usize].iter().enumerate() {
-                    let x = area.x + i as u32;
-                    row[x as usize] = value(pixel, x, y);
+        out.par_chunks_mut(width)
+            .with_min_len(16)
+            .enumerate()
+            .for_each(|(y, row)| {
+                let y = y as u32;
+                if !region.contains(region.x, y) {
+                    row.iter_mut()
+                        .enumerate()
+                        .for_each(|(x, out)| *out = outside(x as u32, y));
+                    return;
                 }
-            }
-        });
+                let right = (region.x + region.width) as usize;
+                for x in (0..region.x as usize).chain(right..width) {
+                    row[x] = outside(x as u32, y);
+                }
+                let tile_row = ((y - region.y) / TILE_SIZE) as usize * columns;
+                for tile in &film.tiles()[tile_row..tile_row + columns] {
+                    let area = tile.area();
+                    let start = tile.index(area.x, y);
+                    for (i, pixel) in tile.pixels()[start..start + area.width as usize]
+                        .iter()
+                        .enumerate()
+                    {
+                        let x = area.x + i as u32;
+                        row[x as usize] = value(pixel, x, y);
+                    }
+                }
+            });
     });
     out
 }

@@ -38,8 +38,14 @@ impl Workers {
             })
             .build()
             .expect("the system refuses the worker threads");
-        let arrays = (0..pool.current_num_threads()).map(|_| Mutex::default()).collect();
-        Self { pool, arrays, is_background }
+        let arrays = (0..pool.current_num_threads())
+            .map(|_| Mutex::default())
+            .collect();
+        Self {
+            pool,
+            arrays,
+            is_background,
+        }
     }
 
     pub(super) fn threads(&self) -> usize {
@@ -59,23 +65,32 @@ impl Workers {
     pub(super) fn with_arrays<R>(&self, work: impl FnOnce(&mut WorkerArrays) -> R) -> R {
         let index = rayon::current_thread_index().unwrap_or(0);
         // Poisoned only by a panic, after which the arrays are still plain memory.
-        let mut arrays = self.arrays[index].lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let mut arrays = self.arrays[index]
+            .lock()
+            .unwrap_or_else(std::sync::PoisonError::into_inner);
         work(&mut arrays)
     }
 }
 
 impl WorkerArrays {
     /// Fills `self.radiance` with the radiance of `self.ids`, at most [`BATCH_SIZE`] paths.
-    pub(super) fn trace(&mut self, tracer: &PathTracer<'_>, integrator: IntegratorKind, counts: &mut PathCounts) {
+    pub(super) fn trace(
+        &mut self,
+        tracer: &PathTracer<'_>,
+        integrator: IntegratorKind,
+        counts: &mut PathCounts,
+    ) {
         debug_assert!(self.ids.len() <= BATCH_SIZE);
         self.radiance.clear();
         match integrator {
             IntegratorKind::Reference => {
-                self.radiance.extend(self.ids.iter().map(|&id| reference(tracer, id, counts)));
+                self.radiance
+                    .extend(self.ids.iter().map(|&id| reference(tracer, id, counts)));
             }
             IntegratorKind::Wavefront => {
                 self.radiance.resize(self.ids.len(), Rgb::ZERO);
-                self.wavefront.trace(tracer, &self.ids, &mut self.radiance, counts);
+                self.wavefront
+                    .trace(tracer, &self.ids, &mut self.radiance, counts);
             }
         }
     }
@@ -85,7 +100,7 @@ impl WorkerArrays {
 pub(super) fn lower_priority() {
     let thread = rustix::thread::gettid();
     // Refused at worst; then the workers run at normal priority.
-    drop(rustix::process::setpriority_process(Some(thread), BACKGROUND_NICE));
+    let _ = rustix::process::setpriority_process(Some(thread), BACKGROUND_NICE);
 }
 
 #[cfg(not(target_os = "linux"))]

@@ -37,7 +37,12 @@ pub(super) struct Picture {
 impl Picture {
     pub(super) fn new(job: RenderJob, generation: u64, scene: &PreparedScene) -> Self {
         let settings = &job.settings;
-        let camera = RayCamera::new(&job.camera, settings.width, settings.height, scene.normalization());
+        let camera = RayCamera::new(
+            &job.camera,
+            settings.width,
+            settings.height,
+            scene.normalization(),
+        );
         let film = Film::new(settings.active_region());
         let summary = film.summary();
         Self {
@@ -68,11 +73,20 @@ impl Picture {
     }
 
     fn caption(&self) -> Caption<'_> {
-        Caption { job: &self.job, generation: self.generation, seconds: self.seconds }
+        Caption {
+            job: &self.job,
+            generation: self.generation,
+            seconds: self.seconds,
+        }
     }
 
     /// The coarse first look, and the paths per second that it measured.
-    pub(super) fn preview(&mut self, workers: &Workers, scene: &PreparedScene, rate: f64) -> (Snapshot, f64) {
+    pub(super) fn preview(
+        &mut self,
+        workers: &Workers,
+        scene: &PreparedScene,
+        rate: f64,
+    ) -> (Snapshot, f64) {
         let size = self.size();
         let step = preview_step(f64::from(size[0]) * f64::from(size[1]), rate);
         let started = Instant::now();
@@ -80,11 +94,24 @@ impl Picture {
         let preview = if view.is_first_hit() {
             Preview::render_first_hit(workers, scene, &self.camera, view, (size, step))
         } else {
-            let settings = PathSettings { light_samples: 1, ..PathSettings::from(&self.job.settings) };
-            Preview::render(workers, &PathTracer::new(scene, &self.camera, settings), size, step).0
+            let settings = PathSettings {
+                light_samples: 1,
+                ..PathSettings::from(&self.job.settings)
+            };
+            Preview::render(
+                workers,
+                &PathTracer::new(scene, &self.camera, settings),
+                size,
+                step,
+            )
+            .0
         };
         let measured = preview.pixels.len() as f64 / started.elapsed().as_secs_f64().max(1e-6);
-        let snapshot = self.caption().plain((preview.width, preview.height), preview.pixels.clone(), true);
+        let snapshot = self.caption().plain(
+            (preview.width, preview.height),
+            preview.pixels.clone(),
+            true,
+        );
         if !view.is_first_hit() {
             self.backdrop = Some(preview);
         }
@@ -107,21 +134,37 @@ impl Picture {
         if stop.seconds.is_some_and(|limit| self.seconds >= limit) {
             return Some(StopReason::Seconds);
         }
-        let is_precise = |aim| self.summary.relative_error.is_some_and(|error| error <= aim);
+        let is_precise = |aim| {
+            self.summary
+                .relative_error
+                .is_some_and(|error| error <= aim)
+        };
         // Two samples can agree by chance; the estimate means something from a few more on.
         (self.done >= 8 && stop.relative_error.is_some_and(is_precise)).then_some(StopReason::Error)
     }
 
     /// Takes samples until the end of the pass or until `stop`.
-    pub(super) fn advance(&mut self, workers: &Workers, scene: &PreparedScene, stop: &(dyn Fn() -> bool + Sync)) {
+    pub(super) fn advance(
+        &mut self,
+        workers: &Workers,
+        scene: &PreparedScene,
+        stop: &(dyn Fn() -> bool + Sync),
+    ) {
         let started = Instant::now();
         let settings = &self.job.settings;
         let tracer = PathTracer::new(scene, &self.camera, PathSettings::from(settings));
         let target = next_target(settings, self.done, self.last_pass);
         let limit = settings.stop.seconds.map(|limit| limit - self.seconds);
-        let is_over = || stop() || limit.is_some_and(|limit| started.elapsed().as_secs_f64() >= limit);
-        let (counts, is_complete) =
-            render_pass(workers, &tracer, settings.integrator, &mut self.film, target, &is_over);
+        let is_over =
+            || stop() || limit.is_some_and(|limit| started.elapsed().as_secs_f64() >= limit);
+        let (counts, is_complete) = render_pass(
+            workers,
+            &tracer,
+            settings.integrator,
+            &mut self.film,
+            target,
+            &is_over,
+        );
         self.counts += counts;
         let elapsed = started.elapsed().as_secs_f64();
         self.seconds += elapsed;
@@ -144,15 +187,25 @@ impl Picture {
         stop: &(dyn Fn() -> bool + Sync),
     ) -> Option<Snapshot> {
         let size = self.size();
-        let pixels = first_hit_pass(workers, scene, &self.camera, (self.job.settings.view, size), stop)?;
+        let pixels = first_hit_pass(
+            workers,
+            scene,
+            &self.camera,
+            (self.job.settings.view, size),
+            stop,
+        )?;
         self.first_hit_is_done = true;
-        Some(self.caption().plain((size[0] as usize, size[1] as usize), pixels, false))
+        Some(
+            self.caption()
+                .plain((size[0] as usize, size[1] as usize), pixels, false),
+        )
     }
 
     /// The picture so far.
     pub(super) fn snapshot(&mut self, workers: &Workers) -> Snapshot {
         self.summary = self.film.summary();
-        self.caption().film(workers, &self.film, &self.summary, self.backdrop.as_ref())
+        self.caption()
+            .film(workers, &self.film, &self.summary, self.backdrop.as_ref())
     }
 
     /// Writes what is known about this picture.

@@ -60,7 +60,9 @@ impl<'a> Turn<'a> {
             }
             (wish.job.clone(), std::mem::take(&mut wish.restart))
         };
-        let Some(job) = job else { return self.wait(seen) };
+        let Some(job) = job else {
+            return self.wait(seen);
+        };
         if self.accept(job, restart, seen).is_break() {
             return true;
         }
@@ -83,7 +85,11 @@ impl<'a> Turn<'a> {
     fn wait(&self, seen: u64) -> bool {
         let mut wish = lock(&self.shared.wish);
         while self.shared.interrupts.load(Ordering::Relaxed) == seen {
-            wish = self.shared.changed.wait(wish).unwrap_or_else(std::sync::PoisonError::into_inner);
+            wish = self
+                .shared
+                .changed
+                .wait(wish)
+                .unwrap_or_else(std::sync::PoisonError::into_inner);
         }
         true
     }
@@ -137,7 +143,9 @@ impl<'a> Turn<'a> {
     }
 
     fn show_preview(&mut self) {
-        let (Some(scene), Some(picture)) = (&self.scene, &mut self.picture) else { return };
+        let (Some(scene), Some(picture)) = (&self.scene, &mut self.picture) else {
+            return;
+        };
         let (snapshot, measured) = picture.preview(&self.workers, scene, self.rate);
         // Previews differ in what they see; half of the old figure stays.
         self.rate = 0.5 * (self.rate + measured);
@@ -160,8 +168,12 @@ impl<'a> Turn<'a> {
             course_compatible: job.settings.course_compatible,
         };
         let started = Instant::now();
-        let prepared = self.workers.install(|| prepare(&job.scene, &settings, &progress));
-        let Some(prepared) = prepared else { return ControlFlow::Break(()) };
+        let prepared = self
+            .workers
+            .install(|| prepare(&job.scene, &settings, &progress));
+        let Some(prepared) = prepared else {
+            return ControlFlow::Break(());
+        };
         let prepared = Arc::new(prepared);
         *lock(&shared.prepared) = Some(Arc::clone(&prepared));
         self.scene = Some(prepared);
@@ -175,7 +187,9 @@ impl<'a> Turn<'a> {
 
     /// Some milliseconds to a fraction of a second of rendering.
     fn work(&mut self, seen: u64) {
-        let (Some(scene), Some(picture)) = (&self.scene, &mut self.picture) else { return };
+        let (Some(scene), Some(picture)) = (&self.scene, &mut self.picture) else {
+            return;
+        };
         self.shared.set_state(SessionState::Rendering);
         let shared = self.shared;
         let is_interrupted = || shared.interrupts.load(Ordering::Relaxed) != seen;
@@ -186,10 +200,13 @@ impl<'a> Turn<'a> {
             }
             return;
         }
-        let every = PUBLISH_EVERY[usize::from(shared.options.interactive)].max(self.publish_cost * PUBLISH_SHARE);
+        let every = PUBLISH_EVERY[usize::from(shared.options.interactive)]
+            .max(self.publish_cost * PUBLISH_SHARE);
         let due = self.published + every;
         // Long passes are cut where the next snapshot is due; the film stays whole.
-        picture.advance(&self.workers, scene, &|| is_interrupted() || Instant::now() >= due);
+        picture.advance(&self.workers, scene, &|| {
+            is_interrupted() || Instant::now() >= due
+        });
         shared.update_status(|status| picture.describe(status));
         self.has_news = true;
         if Instant::now() >= due && !is_interrupted() {
@@ -198,7 +215,9 @@ impl<'a> Turn<'a> {
     }
 
     fn publish_news(&mut self) {
-        let Some(picture) = self.picture.as_mut().filter(|_| self.has_news) else { return };
+        let Some(picture) = self.picture.as_mut().filter(|_| self.has_news) else {
+            return;
+        };
         if picture.job.settings.view.is_first_hit() {
             return;
         }
