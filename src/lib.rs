@@ -2,8 +2,10 @@
 
 pub mod bvh;
 pub mod color;
+pub mod display;
 pub mod geometry;
 pub mod image;
+pub mod io;
 pub mod math;
 pub mod sampling;
 pub mod scene;
