@@ -84,8 +84,6 @@ pub fn write_linear(
         Some(PictureFormat::Exr) => write_exr(path, width, height, pixels, metadata),
         Some(PictureFormat::Hdr) => write_hdr(path, width, height, pixels, metadata),
         Some(PictureFormat::Pfm) => write_pfm(path, width, height, pixels),
-        Some(PictureFormat::Png) | None => {
-            Err(OutputError::NoLinearFormat { path: path.into() })
-        }
+        Some(PictureFormat::Png) | None => Err(OutputError::NoLinearFormat { path: path.into() }),
     }
 }

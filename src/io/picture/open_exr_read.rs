@@ -2,9 +2,7 @@ use std::path::Path;
 
 use exr::meta::MetaData;
 use exr::meta::attribute::AttributeValue;
-use exr::prelude::{
-    AnyChannels, FlatSamples, Image as ExrImage, Layer, ReadChannels, ReadLayers,
-};
+use exr::prelude::{AnyChannels, FlatSamples, Image as ExrImage, Layer, ReadChannels, ReadLayers};
 
 use crate::color::Rgb;
 use crate::image::Image;

@@ -1,11 +1,11 @@
 use std::io::{Cursor, Write};
 use std::path::Path;
 
+use exr::meta::attribute::{AttributeValue, Chromaticities};
 use exr::prelude::{
     AnyChannel, AnyChannels, Blocks, Compression, Encoding, FlatSamples, Image as ExrImage, Layer,
     LayerAttributes, LineOrder, SmallVec, Text, Vec2, WritableImage,
 };
-use exr::meta::attribute::{AttributeValue, Chromaticities};
 
 use crate::color::Rgb;
 
@@ -36,7 +36,11 @@ pub fn write_exr(
     pixels: &[Rgb],
     metadata: &Metadata,
 ) -> Result<(), OutputError> {
-    assert_eq!(pixels.len(), width * height, "a picture of {width}×{height}");
+    assert_eq!(
+        pixels.len(),
+        width * height,
+        "a picture of {width}×{height}"
+    );
     let bytes = encode(width, height, pixels, metadata).map_err(|error| OutputError::Encode {
         path: path.into(),
         reason: error.to_string(),
@@ -90,7 +94,9 @@ fn attributes(metadata: &Metadata) -> LayerAttributes {
     };
     for (key, value) in metadata.iter() {
         let name = utf8(&format!("{PREFIX}{key}"));
-        let _ = attributes.other.insert(name, AttributeValue::Text(utf8(value)));
+        let _ = attributes
+            .other
+            .insert(name, AttributeValue::Text(utf8(value)));
     }
     attributes
 }
@@ -102,7 +108,12 @@ fn attributes(metadata: &Metadata) -> LayerAttributes {
 /// empty name ends the header.
 fn sort_attributes(bytes: &mut [u8]) {
     const START: usize = 8;
-    let text_end = |from: usize| bytes[from..].iter().position(|&b| b == 0).map(|n| from + n + 1);
+    let text_end = |from: usize| {
+        bytes[from..]
+            .iter()
+            .position(|&b| b == 0)
+            .map(|n| from + n + 1)
+    };
     let mut entries = Vec::new();
     let mut at = START;
     while bytes.get(at).is_some_and(|&b| b != 0) {

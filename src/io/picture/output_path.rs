@@ -47,9 +47,11 @@ pub fn numbered_path(folder: &Path, stem: &str, extensions: &[&str]) -> PathBuf 
     (1_u32..)
         .map(|n| folder.join(format!("{stem}_{n:03}")))
         .find(|candidate| {
-            extensions
-                .iter()
-                .all(|extension| append_extension(candidate, extension).symlink_metadata().is_err())
+            extensions.iter().all(|extension| {
+                append_extension(candidate, extension)
+                    .symlink_metadata()
+                    .is_err()
+            })
         })
         .expect("a folder holds fewer than 2^32 files")
 }

@@ -21,7 +21,11 @@ pub fn write_pfm(
     height: usize,
     pixels: &[Rgb],
 ) -> Result<(), OutputError> {
-    assert_eq!(pixels.len(), width * height, "a picture of {width}×{height}");
+    assert_eq!(
+        pixels.len(),
+        width * height,
+        "a picture of {width}×{height}"
+    );
     let mut bytes = format!("PF\n{width} {height}\n-1.0\n").into_bytes();
     bytes.reserve(pixels.len() * 12);
     for y in (0..height).rev() {

@@ -24,7 +24,11 @@ pub fn write_png(
     pixels: &[[u8; 3]],
     metadata: &Metadata,
 ) -> Result<(), OutputError> {
-    assert_eq!(pixels.len(), width * height, "a picture of {width}×{height}");
+    assert_eq!(
+        pixels.len(),
+        width * height,
+        "a picture of {width}×{height}"
+    );
     let too_large = |_| OutputError::Encode {
         path: path.into(),
         reason: "the picture is too large for PNG".to_owned(),
@@ -107,10 +111,15 @@ fn decode(file: impl std::io::BufRead + std::io::Seek) -> Result<Picture, String
     let mut bytes = vec![0; size];
     let frame = reader.next_frame(&mut bytes).map_err(text)?;
     bytes.truncate(frame.buffer_size());
-    let linear: Vec<f32> = (0..=255_u8).map(|c| srgb_decode(f32::from(c) / 255.0)).collect();
+    let linear: Vec<f32> = (0..=255_u8)
+        .map(|c| srgb_decode(f32::from(c) / 255.0))
+        .collect();
     let at = |byte: u8| linear[usize::from(byte)];
     let pixels = match frame.color_type.samples() {
-        samples @ 1..=2 => bytes.chunks_exact(samples).map(|p| Rgb::splat(at(p[0]))).collect(),
+        samples @ 1..=2 => bytes
+            .chunks_exact(samples)
+            .map(|p| Rgb::splat(at(p[0])))
+            .collect(),
         samples => bytes
             .chunks_exact(samples)
             .map(|p| Rgb::new(at(p[0]), at(p[1]), at(p[2])))

@@ -27,7 +27,11 @@ pub fn write_hdr(
     pixels: &[Rgb],
     metadata: &Metadata,
 ) -> Result<(), OutputError> {
-    assert_eq!(pixels.len(), width * height, "a picture of {width}×{height}");
+    assert_eq!(
+        pixels.len(),
+        width * height,
+        "a picture of {width}×{height}"
+    );
     let mut bytes = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n".to_vec();
     for (key, value) in metadata.iter() {
         // A JSON text holds no line break, which would end the header line.
