@@ -28,7 +28,7 @@ impl OpponentImage {
         let opponent: Vec<Vec3> = image
             .pixels()
             .iter()
-            .map(|&p| spaces.opponent(clip(p)))
+            .map(|&p| spaces.opponent_of(clip(p)))
             .collect();
         let plane = |channel: usize| {
             let values = opponent.iter().map(|c| c[channel]).collect();
@@ -51,7 +51,7 @@ impl OpponentImage {
         let channels = a.values().iter().zip(rg.values()).zip(by.values());
         channels
             .map(|((&y, &cx), &cz)| {
-                let rgb = spaces.from_opponent(Vec3::new(y, cx, cz));
+                let rgb = spaces.rgb_of(Vec3::new(y, cx, cz));
                 hunt(spaces.lab(clip(rgb)))
             })
             .collect()
@@ -151,12 +151,12 @@ impl ColorSpaces {
     }
 
     /// YCxCz: a linear form of L*a*b*.
-    fn opponent(&self, rgb: Rgb) -> Vec3 {
+    fn opponent_of(&self, rgb: Rgb) -> Vec3 {
         let c = self.xyz_from_rgb * rgb;
         Vec3::new(116.0 * c.y - 16.0, 500.0 * (c.x - c.y), 200.0 * (c.y - c.z))
     }
 
-    fn from_opponent(&self, opponent: Vec3) -> Rgb {
+    fn rgb_of(&self, opponent: Vec3) -> Rgb {
         let y = (opponent.x + 16.0) / 116.0;
         let xyz = Vec3::new(y + opponent.y / 500.0, y, y - opponent.z / 200.0);
         self.rgb_from_xyz * xyz
@@ -196,7 +196,7 @@ mod tests {
                 "{}",
                 spaces.lab(rgb)
             );
-            let back = spaces.from_opponent(spaces.opponent(rgb));
+            let back = spaces.rgb_of(spaces.opponent_of(rgb));
             assert!((back - rgb).length() < 1e-5, "{back}");
         }
     }
