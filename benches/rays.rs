@@ -4,6 +4,7 @@
 //! of several runs. Figures of different machines do not compare; those of one machine do.
 
 use std::f32::consts::TAU;
+use std::io::Write;
 use std::time::Duration;
 
 use glam::Vec3;
@@ -16,11 +17,13 @@ const RUNS: usize = 5;
 const RAYS: usize = 1 << 17;
 const BATCH: usize = 2048;
 
-fn main() {
+fn main() -> std::io::Result<()> {
+    let mut out = std::io::stdout().lock();
     let wanted = std::env::args().skip(1).find(|a| !a.starts_with('-'));
-    println!(
+    writeln!(
+        out,
         "scene        kind    leaf |  build s   Mtri/s  nodes  depth   SAH | Mray/s: primary  bounce  shadow"
-    );
+    )?;
     for (name, shapes) in [
         ("box 36", room(Shapes::default())),
         ("sphere 10k", room(sphere(72))),
@@ -31,12 +34,18 @@ fn main() {
             continue;
         }
         for (kind, leaf_size) in [(BvhKind::Sah, 4), (BvhKind::Sah, 8), (BvhKind::Median, 4)] {
-            report(name, &shapes, BvhSettings { kind, leaf_size });
+            report(&mut out, name, &shapes, BvhSettings { kind, leaf_size })?;
         }
     }
+    Ok(())
 }
 
-fn report(name: &str, shapes: &Shapes, settings: BvhSettings) {
+fn report(
+    out: &mut impl Write,
+    name: &str,
+    shapes: &Shapes,
+    settings: BvhSettings,
+) -> std::io::Result<()> {
     let builds = if shapes.len() > 200_000 { 1 } else { RUNS };
     let one = rayon::ThreadPoolBuilder::new()
         .num_threads(1)
@@ -54,7 +63,8 @@ fn report(name: &str, shapes: &Shapes, settings: BvhSettings) {
     let rate = |rays: &[Ray], any: bool| {
         rays.len() as f64 / median(RUNS, || process_time(|| trace(&aggregate, rays, any))) / 1e6
     };
-    println!(
+    writeln!(
+        out,
         "{name:<12} {:<7} {:>4} | {build:8.3} {:8.2} {:6} {:6} {:5.1} | {:15.2} {:7.2} {:7.2}",
         format!("{:?}", settings.kind),
         settings.leaf_size,
@@ -65,7 +75,7 @@ fn report(name: &str, shapes: &Shapes, settings: BvhSettings) {
         rate(&primary, false),
         rate(&bounce, false),
         rate(&shadow, true),
-    );
+    )
 }
 
 fn trace(aggregate: &Aggregate, rays: &[Ray], any: bool) {
