@@ -67,7 +67,7 @@ impl Bvh {
         pairs.shrink_to_fit();
         let order: Vec<_> = refs.iter().map(|r| r.id).collect();
         let excluded = boxes.len() - order.len();
-        Some(Self::from_parts(pairs, order, excluded, start.elapsed()))
+        Some(Self::from_parts(pairs, order, excluded, start))
     }
 }
 
