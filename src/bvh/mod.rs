@@ -10,9 +10,10 @@
 
 mod build;
 mod node;
+mod range;
+mod sah;
 mod settings;
 mod slab;
-mod split;
 mod stats;
 mod traverse;
 mod tree;

@@ -5,18 +5,20 @@ use crate::math::{Aabb, Ray, gamma};
 
 /// Nothing at or beyond this ray parameter is ever reported.
 ///
-/// Far below `f32::MAX` / [`MIN_PAD`], so that a ray parallel to a slab is decided by the side of
-/// its origin alone.
+/// Far below `f32::MAX` times the least padding, so that a ray parallel to a slab is decided by the
+/// side of its origin alone.
 pub const T_FAR: f32 = 1e18;
 
 /// Least distance by which a box is padded.
 const MIN_PAD: f32 = 1e-20;
 
-/// A primitive's own test may be off by a few roundings of numbers as large as the primitive …
+/// Padding as a fraction of the longest edge: a primitive's own test may be off by a few roundings
+/// of numbers as large as the primitive.
 const PAD: f32 = gamma(16);
 
-/// … and of numbers as large as its distance. Ize 2013, "Robust BVH Ray Traversal", derives
-/// 1 + 2γ(3) for the roundings of the box test alone; the rest is for the primitive test.
+/// Factor on the far end of the interval: the primitive's own test may be off by a few roundings of
+/// numbers as large as its distance too. Ize 2013, "Robust BVH Ray Traversal", derives 1 + 2γ(3)
+/// for the roundings of the box test alone.
 const FAR_MARGIN: f32 = 1.0 + 2.0 * gamma(8);
 
 /// The box that stands for `bounds` in the tree: slightly larger on every side, never flat.
@@ -51,7 +53,6 @@ impl SlabRay {
     /// Prepares `ray`; `None` when it cannot meet anything (a number that is not finite, no
     /// direction, nothing between `t_min` and `t_max`).
     pub fn new(ray: &Ray) -> Option<Self> {
-        // Sums are finite only if every term is, and a few finite terms of this size cannot overflow.
         let valid = ray.origin.is_finite()
             && ray.direction.is_finite()
             && ray.direction != Vec3::ZERO
