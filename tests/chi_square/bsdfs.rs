@@ -10,9 +10,15 @@ fn toward(cos: f32, phi: f32) -> Vec3 {
     Vec3::new(sin * phi.cos(), sin * phi.sin(), cos)
 }
 
-/// `radius` is the width of the lobe about the mirror direction, in radians.
+/// `radius` is the width of the lobe about the mirror direction in radians; wide lobes are looked at
+/// from the normal, so that the horizon is an edge of the cells.
 fn case(name: String, bsdf: Bsdf, wo: Vec3, radius: f64, integral: Option<f64>) -> Case {
-    let directions = Directions::around(Vec3::new(-wo.x, -wo.y, wo.z), radius);
+    let axis = if radius < 1.0 {
+        Vec3::new(-wo.x, -wo.y, wo.z)
+    } else {
+        Vec3::Z
+    };
+    let directions = Directions::around(axis, radius);
     Case {
         name,
         sample: Box::new(move |numbers| {
@@ -44,7 +50,7 @@ pub(crate) fn cases() -> Vec<Case> {
         .into_iter()
         .flat_map(|(cos, phi)| {
             let wo = toward(cos, phi);
-            let rough = [(0.01, 0.03), (0.1, 0.3), (0.5, 1.2), (1.0, 3.0)];
+            let rough = [(0.01, 0.03), (0.1, 0.3), (0.5, 3.0), (1.0, 3.0)];
             let metal = rough.map(|(alpha, radius)| {
                 let bsdf = Bsdf::Microfacet(Microfacet::new(alpha, eta, k));
                 case(

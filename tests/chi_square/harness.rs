@@ -29,8 +29,8 @@ pub(crate) struct Case {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Outcome {
     pub(crate) p_value: f64,
-    pub(crate) statistic: f64,
-    pub(crate) freedom: f64,
+    statistic: f64,
+    freedom: f64,
     /// ∫ density over the square.
     integral: f64,
     expected_integral: Option<f64>,
@@ -46,7 +46,13 @@ impl Outcome {
                 .expected_integral
                 .is_some_and(|e| (self.integral - e).abs() > 5e-4);
         let fails = self.p_value < level || self.impossible > 2 || wrong_integral;
-        fails.then(|| format!("{name}: {self:?}"))
+        fails.then(|| {
+            format!(
+                "{name}: p = {:.2e} (chi-square {:.1} of {} degrees of freedom), integral {:.5}, \
+                 {} samples where the density is zero",
+                self.p_value, self.statistic, self.freedom, self.integral, self.impossible
+            )
+        })
     }
 }
 
@@ -95,7 +101,7 @@ impl Case {
         let size = 1.0 / CELLS as f64;
         let corner = DVec2::new((cell % CELLS) as f64, (cell / CELLS) as f64) * size;
         // A tenth of a sample.
-        let tolerance = 0.1 / f64::from(SAMPLES);
+        let tolerance = 0.01 / f64::from(SAMPLES);
         let on_grid = |n: usize, depth: u32| -> f64 {
             let part = size / n as f64;
             (0..n * n)
