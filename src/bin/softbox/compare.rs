@@ -51,7 +51,11 @@ fn print(report: &Report, as_json: bool) -> std::io::Result<()> {
         report.width, report.height
     )?;
     writeln!(out, "  relMSE            {:.6e}", c.rel_mse)?;
-    writeln!(out, "  without worst 0.1 % {:.6e}", c.rel_mse_trimmed)?;
+    writeln!(
+        out,
+        "  relMSE, trimmed   {:.6e} (without the worst 0.1 % of the pixels)",
+        c.rel_mse_trimmed
+    )?;
     writeln!(out, "  MSE               {:.6e}", c.mse)?;
     writeln!(out, "  FLIP              {:.5}", c.flip)?;
     let [r, g, b] = c.mean_difference;
