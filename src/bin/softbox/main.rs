@@ -1,2 +1,50 @@
-//! The program.
-fn main() {}
+//! The program: `softbox [SCENE]` opens the window, everything else works without one.
+
+mod args;
+mod command_line;
+mod compare;
+mod course_args;
+mod exit;
+mod info;
+mod job;
+#[cfg_attr(
+    not(test),
+    expect(dead_code, reason = "reports once `render` calls the session")
+)]
+mod progress;
+mod render;
+mod settings_args;
+mod values;
+mod viewer;
+
+use std::io::Write;
+use std::process::ExitCode;
+
+use args::Request;
+use exit::Failure;
+
+fn main() -> ExitCode {
+    let request = match args::parse(std::env::args_os()) {
+        Ok(request) => request,
+        // Prints to the right stream; status 2 for errors, 0 for help and version.
+        Err(error) => error.exit(),
+    };
+    match run(request) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            let mut stderr = std::io::stderr().lock();
+            // Nobody is left to tell when this fails as well.
+            let _ = writeln!(stderr, "softbox: {:#}", failure.error);
+            failure.status.into()
+        }
+    }
+}
+
+fn run(request: Request) -> Result<(), Failure> {
+    match request {
+        Request::View(job, options) => viewer::run(&job, &options),
+        Request::Render(job, reporting) => render::run(&job, &reporting),
+        Request::Info(info) => info::run(&info),
+        Request::Compare(compare) => compare::run(&compare),
+    }
+}
