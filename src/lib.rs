@@ -4,6 +4,7 @@ pub mod bvh;
 pub mod color;
 pub mod geometry;
 pub mod image;
+pub mod io;
 pub mod math;
 pub mod sampling;
 pub mod scene;
