@@ -110,7 +110,7 @@ impl Case {
                 .map(|(c, whole)| adaptive(&self.density, (c, part), whole, tolerance, depth))
                 .sum()
         };
-        let share = on_grid(2, 7);
+        let share = on_grid(2, 6);
         if share == 0.0 && observed > 0 {
             on_grid(32, 3)
         } else {
