@@ -3,6 +3,7 @@
 
 mod degenerate;
 mod exact;
+mod oracle;
 mod scenes;
 mod selfhit;
 mod structure;
