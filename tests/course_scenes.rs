@@ -50,6 +50,7 @@ const SCENES: [(&str, usize, usize); 32] = [
 /// The only fault in all of them: a camera's matrix of fifteen numbers.
 const KNOWN_FAULT: &str = "scenes/sky/CBgems.dae";
 
+#[expect(clippy::print_stdout, reason = "says which scenes were not there")]
 fn load(file: &str) -> Option<Loaded> {
     let path: PathBuf = [env!("CARGO_MANIFEST_DIR"), "..", "shared"]
         .iter()

@@ -109,8 +109,10 @@ fn find_visual_scene<'a, 'input>(
     if let Some(named) = named {
         return Ok(named);
     }
-    let first = children(xml.root, "library_visual_scenes")
-        .find_map(|library| child(library, "visual_scene"));
+    let first = xml
+        .root
+        .descendants()
+        .find(|node| node.tag_name().name() == "visual_scene");
     let Some(first) = first else {
         return Err(ImportError::NoVisualScene {
             path: reporter.path.to_owned(),

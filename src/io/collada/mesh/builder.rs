@@ -161,7 +161,7 @@ impl<'b, 'a, 'input> MeshBuilder<'b, 'a, 'input> {
             return self.add_triangle(inputs, [a, b, c]);
         }
         self.corners.clear();
-        let mut ranges = Vec::with_capacity(rings.len());
+        let mut lengths = Vec::with_capacity(rings.len());
         for ring in rings {
             let start = self.corners.len();
             for indices in ring.chunks_exact(inputs.stride) {
@@ -171,9 +171,9 @@ impl<'b, 'a, 'input> MeshBuilder<'b, 'a, 'input> {
                 }
             }
             self.drop_repeats_from(start);
-            ranges.push(start..self.corners.len());
+            lengths.push(self.corners.len() - start);
         }
-        let has_outline = ranges.first().is_some_and(|outline| outline.len() >= 3);
+        let has_outline = lengths.first().is_some_and(|corners| *corners >= 3);
         if !has_outline {
             return self.faults.add(Fault::NoArea, 1);
         }
@@ -183,7 +183,7 @@ impl<'b, 'a, 'input> MeshBuilder<'b, 'a, 'input> {
         self.points.extend(self.corners.iter().map(position));
         let quality = self
             .triangulator
-            .triangulate(&self.points, &ranges, &mut self.cut);
+            .triangulate(&self.points, &lengths, &mut self.cut);
         match quality {
             Quality::Clean => {}
             Quality::NoArea => self.faults.add(Fault::NoArea, 1),

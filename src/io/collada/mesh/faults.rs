@@ -38,7 +38,7 @@ impl Fault {
             Self::CutOff => "faces were dropped because the list of indices ends before them",
             Self::NoArea => "faces without area were dropped",
             Self::SelfCrossing => {
-                "polygons cross themselves or have a hole outside; their triangles are a guess"
+                "polygons cross themselves or have an impossible hole; their triangles are a guess"
             }
             Self::TooComplex => "polygons have too many corners to be cut well; they became fans",
             Self::BadNormal => "corners have no usable normal; the surface's own is taken there",
