@@ -12,6 +12,11 @@ use crate::settings::{MaxDepth, Mode, RenderSettings};
 
 /// Smallest probability with which Russian roulette lets a path live.
 const MIN_SURVIVAL: f32 = 0.05;
+/// From this bounce on no path is sure to live: light trapped between perfect mirrors or by total
+/// reflection would go on for ever.
+const TRAPPED_AFTER: u32 = 32;
+/// The largest probability from then on.
+const TRAPPED_SURVIVAL: f32 = 0.95;
 
 /// The settings that a path depends on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -243,7 +248,8 @@ fn vertex(mut surface: SurfaceInteraction, wo: Vec3, bsdf: &Bsdf) -> Vertex<'_> 
 
 /// Russian roulette by throughput; survivors are divided by their probability, so the mean stays.
 fn survives(path: &mut Path, u: f32) -> bool {
-    let survival = path.throughput.max_element().clamp(MIN_SURVIVAL, 1.0);
+    let most = if path.bounce < TRAPPED_AFTER { 1.0 } else { TRAPPED_SURVIVAL };
+    let survival = path.throughput.max_element().clamp(MIN_SURVIVAL, most);
     if u >= survival {
         return false;
     }

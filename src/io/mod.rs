@@ -1,6 +1,7 @@
 //! Floor 7: files in and out. Reading gives a [`crate::scene::Scene`] with a report of what was
 //! read, guessed and dropped.
 
+mod builtin;
 pub mod camera_file;
 mod collada;
 mod error;
@@ -9,6 +10,7 @@ pub mod picture;
 mod progress;
 mod report;
 
+pub use builtin::{DEFAULT_SCENE, builtin_names, builtin_scene};
 pub use collada::read_collada;
 pub use error::ImportError;
 pub use load::{Loaded, load_scene};

@@ -7,6 +7,9 @@ use crate::color::Rgb;
 use crate::geometry::Mesh;
 use crate::image::Image;
 
+/// Radiance of the sky that a scene without light gets.
+const ADDED_SKY: Rgb = Rgb::splat(0.8);
+
 /// A scene as a file describes it: plain data with indices, large parts shared, double precision.
 ///
 /// All matrices and points are in the file's units, after conversion to a Y-up world.
@@ -282,5 +285,16 @@ impl Scene {
                 .instances
                 .iter()
                 .any(|instance| instance.materials.iter().any(emits))
+    }
+
+    /// Gives a scene without any light a soft sky, so that there is something to see; true when it
+    /// did. [`Environment::is_added`] keeps it apart from the scene's own light.
+    pub fn light_if_dark(&mut self) -> bool {
+        if self.has_light() {
+            return false;
+        }
+        self.environment.sky = ADDED_SKY;
+        self.environment.is_added = true;
+        true
     }
 }

@@ -21,4 +21,5 @@ mod transform;
 mod values;
 mod xml;
 
+pub(super) use read::parse_collada;
 pub use read::read_collada;

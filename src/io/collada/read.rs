@@ -31,15 +31,46 @@ pub fn read_collada(
     if let Some(oddity) = decoded.oddity {
         notes.add(Severity::Warning, None, "text", oddity);
     }
+    let counts = ReadCounts {
+        bytes,
+        encoding: decoded.encoding.to_owned(),
+        ..ReadCounts::default()
+    };
+    read_scene(&decoded.text, notes, reporter, counts)
+}
+
+/// Reads COLLADA from memory; `name` stands for the file.
+///
+/// # Errors
+/// As [`read_collada`].
+pub(in crate::io) fn parse_collada(text: &str, name: &str) -> Result<Loaded, ImportError> {
+    let reporter = Reporter {
+        path: Path::new(name),
+        callback: &mut |_| ControlFlow::Continue(()),
+    };
+    let counts = ReadCounts {
+        bytes: text.len() as u64,
+        encoding: "UTF-8".to_owned(),
+        ..ReadCounts::default()
+    };
+    read_scene(text, Notes::default(), reporter, counts)
+}
+
+fn read_scene(
+    text: &str,
+    mut notes: Notes,
+    mut reporter: Reporter<'_>,
+    counts: ReadCounts,
+) -> Result<Loaded, ImportError> {
+    let path = reporter.path;
     reporter.at(LoadStage::Parsing, 0.0)?;
-    let text = decoded.text;
     let repaired;
-    let document = match Document::parse(&text) {
+    let document = match Document::parse(text) {
         Ok(document) => document,
         Err(error) => {
-            let (fixed, repairs) = repair(&text);
+            let (fixed, repairs) = repair(text);
             if repairs.ampersands + repairs.forbidden == 0 {
-                return Err(xml_error(path, &text, &error));
+                return Err(xml_error(path, text, &error));
             }
             let messages = [
                 (repairs.ampersands, "bare & were read as &amp;"),
@@ -65,10 +96,8 @@ pub fn read_collada(
     }
     reporter.at(LoadStage::Parsing, 1.0)?;
     let counts = ReadCounts {
-        bytes,
         lines: text.lines().count() as u64,
-        encoding: decoded.encoding.to_owned(),
-        ..ReadCounts::default()
+        ..counts
     };
     build_scene(&xml, notes, &mut reporter, counts)
 }
