@@ -1,6 +1,23 @@
 //! Floor 2: the bounding volume hierarchy over boxes. Knows no shape: leaves are tested through a
 //! trait that the caller implements.
+//!
+//! The traversal never loses a primitive to rounding. Boxes are padded ([`padded`]), the box test
+//! has a margin, and every operation in it rounds monotonically, so that a ray that meets a padded
+//! box also meets, in floating point, every box around it. A caller that keeps a hit only if the
+//! ray meets the primitive's own padded box, and never reports it in front of that box
+//! ([`SlabRay::enter`]), gets the same answer from every tree, bit for bit.
 
+mod build;
+mod node;
 mod settings;
+mod slab;
+mod split;
+mod stats;
+mod traverse;
+mod tree;
 
 pub use settings::{BvhKind, BvhSettings};
+pub use slab::{SlabRay, T_FAR, padded};
+pub use stats::BvhStats;
+pub use traverse::{Leaf, Stack, Work};
+pub use tree::{Bvh, NodeId};

@@ -3,10 +3,15 @@
 
 mod aggregate;
 mod hit;
+mod leaf;
 mod mesh;
 mod shapes;
+mod sphere;
+mod triangle;
 
 pub use aggregate::{Aggregate, TraceCounts};
 pub use hit::Hit;
 pub use mesh::{Corner, Mesh, MeshTriangle};
-pub use shapes::{Shapes, Sphere};
+pub use shapes::Shapes;
+pub use sphere::Sphere;
+pub use triangle::triangle_point_and_error;

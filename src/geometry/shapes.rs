@@ -1,13 +1,6 @@
 use glam::Vec3;
 
-/// An analytic sphere in scene space.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sphere {
-    /// Centre.
-    pub center: Vec3,
-    /// Radius, positive.
-    pub radius: f32,
-}
+use super::Sphere;
 
 /// Everything rays can meet, in the normalised space of the prepared scene.
 ///

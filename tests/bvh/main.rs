@@ -1,0 +1,9 @@
+//! The ray kernel: watertight, exact against brute force, robust against bad input.
+//! The names G1 … G16 are those of the list of stress tests.
+
+mod degenerate;
+mod exact;
+mod scenes;
+mod selfhit;
+mod structure;
+mod watertight;

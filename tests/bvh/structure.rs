@@ -1,0 +1,206 @@
+//! The tree itself: its order, its bounds, its statistics, and how it is built.
+
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use softbox::bvh::{Bvh, BvhKind, BvhSettings, NodeId};
+use softbox::geometry::{Aggregate, TraceCounts};
+use softbox::math::Aabb;
+
+use crate::scenes::{self, settings};
+
+fn boxes(n: usize) -> Vec<Aabb> {
+    let shapes = scenes::random_soup(n, 0.1, 8);
+    (0..n)
+        .map(|i| Aabb::from_points(shapes.vertices(i)))
+        .collect()
+}
+
+fn contains(outer: Aabb, inner: Aabb) -> bool {
+    outer.union(inner) == outer
+}
+
+/// All nodes below and including `node`, depth first.
+fn nodes(bvh: &Bvh, node: NodeId, out: &mut Vec<NodeId>) {
+    out.push(node);
+    for child in bvh.children(node).into_iter().flatten() {
+        nodes(bvh, child, out);
+    }
+}
+
+#[test]
+fn every_node_holds_its_children_and_every_primitive_is_in_one_leaf() {
+    let boxes = boxes(5_000);
+    for kind in [BvhKind::None, BvhKind::Median, BvhKind::Sah] {
+        for leaf_size in [1, 4, 16] {
+            let bvh = Bvh::build(&boxes, &settings(kind, leaf_size));
+            let root = bvh.root().expect("not empty");
+            let mut all = Vec::new();
+            nodes(&bvh, root, &mut all);
+            assert_eq!(all.len(), bvh.node_count());
+            let mut in_leaves = 0;
+            for &node in &all {
+                let bounds = bvh.bounds(node);
+                for &id in bvh.primitives(node) {
+                    assert!(contains(bounds, boxes[id as usize]));
+                }
+                let Some(children) = bvh.children(node) else {
+                    assert!(
+                        kind == BvhKind::None || bvh.primitives(node).len() <= leaf_size as usize
+                    );
+                    in_leaves += bvh.primitives(node).len();
+                    continue;
+                };
+                for child in children {
+                    assert!(contains(bounds, bvh.bounds(child)));
+                    assert_eq!(bvh.parent(child), Some(node));
+                    assert_eq!(bvh.depth(child), bvh.depth(node) + 1);
+                }
+            }
+            assert_eq!(
+                (in_leaves, bvh.parent(root), bvh.depth(root)),
+                (5_000, None, 0)
+            );
+            let mut ids = bvh.order().to_vec();
+            ids.sort_unstable();
+            assert!(ids.into_iter().eq(0..5_000));
+        }
+    }
+}
+
+#[test]
+fn statistics_describe_the_tree() {
+    let boxes = boxes(5_000);
+    let cost = |kind| {
+        let stats = Bvh::build(&boxes, &settings(kind, 4)).stats();
+        assert_eq!(stats.primitives, 5_000);
+        assert_eq!(
+            stats
+                .leaf_histogram
+                .iter()
+                .map(|(size, n)| size * n)
+                .sum::<usize>(),
+            5_000
+        );
+        assert_eq!(stats.leaf_histogram.values().sum::<usize>(), stats.leaves);
+        assert_eq!(
+            stats.leaf_histogram.keys().last(),
+            Some(&stats.largest_leaf)
+        );
+        assert_eq!(stats.nodes, 2 * stats.leaves - 1);
+        assert!(stats.mean_leaf_depth <= stats.max_depth as f64);
+        assert!(stats.bytes >= 32 * stats.nodes + 4 * 5_000);
+        stats.sah_cost
+    };
+    let (none, median, sah) = (
+        cost(BvhKind::None),
+        cost(BvhKind::Median),
+        cost(BvhKind::Sah),
+    );
+    assert_eq!(none, 5_000.0);
+    assert!(sah < median && median < 0.1 * none, "{sah} {median} {none}");
+}
+
+#[test]
+fn the_tree_does_not_depend_on_the_number_of_threads() {
+    // Large enough for parallel scans and several parallel splits.
+    let boxes = boxes(150_000);
+    for kind in [BvhKind::Median, BvhKind::Sah] {
+        let build = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+            let bvh = pool
+                .expect("threads")
+                .install(|| Bvh::build(&boxes, &settings(kind, 4)));
+            let mut all = Vec::new();
+            nodes(&bvh, bvh.root().expect("not empty"), &mut all);
+            let nodes: Vec<_> = all
+                .into_iter()
+                .map(|n| (bvh.bounds(n), bvh.slots(n)))
+                .collect();
+            (bvh.order().to_vec(), nodes)
+        };
+        let one = build(1);
+        assert!(one == build(2) && one == build(3), "{kind:?}");
+    }
+}
+
+#[test]
+fn a_build_reports_its_progress_and_can_be_stopped() {
+    let boxes = boxes(60_000);
+    for kind in [BvhKind::None, BvhKind::Median, BvhKind::Sah] {
+        let calls = AtomicUsize::new(0);
+        let finished = AtomicUsize::new(0);
+        let built = Bvh::build_with(&boxes, &settings(kind, 4), &|done| {
+            assert!((0.0..=1.0).contains(&done));
+            calls.fetch_add(1, Ordering::Relaxed);
+            finished.fetch_add(usize::from(done == 1.0), Ordering::Relaxed);
+            ControlFlow::Continue(())
+        });
+        assert!(built.is_some());
+        let calls = calls.into_inner();
+        assert_eq!(finished.into_inner(), 1);
+        for stop_at in [0, calls / 2, calls - 1] {
+            let seen = AtomicUsize::new(0);
+            let built = Bvh::build_with(&boxes, &settings(kind, 4), &|_| {
+                if seen.fetch_add(1, Ordering::Relaxed) >= stop_at {
+                    ControlFlow::Break(())
+                } else {
+                    ControlFlow::Continue(())
+                }
+            });
+            assert!(built.is_none(), "{kind:?} at {stop_at} of {calls}");
+        }
+    }
+}
+
+#[test]
+fn empty_and_tiny_trees_have_a_sensible_shape() {
+    let empty = Bvh::build(&[], &BvhSettings::default());
+    assert_eq!(
+        (empty.node_count(), empty.root(), empty.stats().leaves),
+        (0, None, 0)
+    );
+    let one = Bvh::build(&boxes(1), &BvhSettings::default());
+    assert_eq!(
+        (one.node_count(), one.stats().leaves, one.stats().max_depth),
+        (1, 1, 0)
+    );
+    // A leaf size of 0 means 1.
+    let two = Bvh::build(&boxes(2), &settings(BvhKind::Median, 0));
+    assert_eq!((two.node_count(), two.stats().largest_leaf), (3, 1));
+}
+
+/// Centres that halve their distance each time: the heuristic alone would peel off one by one.
+#[test]
+fn the_depth_is_bounded_for_centres_in_geometric_progression() {
+    let boxes: Vec<_> = (0..250)
+        .map(|i| {
+            let x = 2.0_f32.powi(120 - i);
+            Aabb::from_points([glam::Vec3::splat(x), glam::Vec3::splat(x * 1.01)])
+        })
+        .collect();
+    let stats = Bvh::build(&boxes, &settings(BvhKind::Sah, 1)).stats();
+    assert!(stats.max_depth <= 92, "{stats:?}");
+}
+
+#[test]
+fn traversal_counts_its_work_and_the_tree_saves_most_of_it() {
+    let rays = scenes::random_rays(2_000, 7);
+    let shapes = scenes::random_soup(5_000, 0.05, 3);
+    let work = |kind| {
+        let aggregate = Aggregate::build(shapes.clone(), settings(kind, 4));
+        let mut counts = TraceCounts::default();
+        let mut hits = vec![softbox::geometry::Hit::MISS; rays.len()];
+        aggregate.closest_hit(&rays, &mut hits, &mut counts);
+        assert_eq!(counts.rays, 2_000);
+        assert!(counts.box_tests >= 2_000);
+        counts.primitive_tests
+    };
+    let (none, median, sah) = (
+        work(BvhKind::None),
+        work(BvhKind::Median),
+        work(BvhKind::Sah),
+    );
+    assert!(none > 4_000 * 1_000, "{none}");
+    assert!(sah * 50 < none && sah < median, "{sah} {median} {none}");
+}
