@@ -1,7 +1,10 @@
 //! Floor 2: plain pixels and rectangles of them.
 
+mod compare;
+mod flip;
 mod region;
 
+pub use compare::{CompareError, Comparison, compare};
 pub use region::Region;
 
 /// A rectangle of pixels, row by row from the top left, y down.

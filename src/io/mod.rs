@@ -1,0 +1,3 @@
+//! Floor 7: files in and out.
+
+pub mod picture;
