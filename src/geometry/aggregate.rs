@@ -52,15 +52,6 @@ impl Aggregate {
         })
     }
 
-    /// tmp
-    pub fn build_with(
-        shapes: Shapes,
-        settings: BvhSettings,
-        _progress: &(dyn Fn(f32) -> std::ops::ControlFlow<()> + Sync),
-    ) -> Option<Self> {
-        Some(Self::build(shapes, settings))
-    }
-
     /// The shapes.
     pub fn shapes(&self) -> &Shapes {
         &self.shapes
