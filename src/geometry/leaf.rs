@@ -79,7 +79,9 @@ impl<'a, const ANY: bool> Search<'a, ANY> {
     /// box, and lies no nearer than that box.
     fn offer(&mut self, t: f32, id: u32, weights: (f32, f32), bounds: impl FnOnce() -> Aabb) {
         // Moving to the front of the box only ever enlarges t, and must not carry it past t_min.
-        if t <= self.slab.t_min() || t >= self.slab.t_max() || t > self.hit.t {
+        // A t that is NaN, from numbers too large for f32, fails here too.
+        let possible = t > self.slab.t_min() && t < self.slab.t_max() && t <= self.hit.t;
+        if !possible {
             return;
         }
         let Some(front) = self.slab.enter(&padded(bounds())) else {

@@ -6,14 +6,14 @@ use softbox::geometry::{Aggregate, Hit, Shapes, Sphere, TraceCounts};
 use softbox::math::Ray;
 
 /// A small generator of random numbers (Marsaglia 2003, "Xorshift RNGs").
-pub struct Random(u64);
+pub(crate) struct Random(u64);
 
 impl Random {
-    pub fn new(seed: u64) -> Self {
+    pub(crate) fn new(seed: u64) -> Self {
         Self(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1)
     }
 
-    pub fn bits(&mut self) -> u64 {
+    pub(crate) fn bits(&mut self) -> u64 {
         self.0 ^= self.0 << 13;
         self.0 ^= self.0 >> 7;
         self.0 ^= self.0 << 17;
@@ -21,21 +21,21 @@ impl Random {
     }
 
     /// Uniform in [0, 1).
-    pub fn unit(&mut self) -> f32 {
+    pub(crate) fn unit(&mut self) -> f32 {
         (self.bits() >> 40) as f32 / (1_u64 << 24) as f32
     }
 
-    pub fn below(&mut self, n: usize) -> usize {
+    pub(crate) fn below(&mut self, n: usize) -> usize {
         (self.bits() >> 11) as usize % n
     }
 
     /// Uniform in the cube from -1 to 1.
-    pub fn in_cube(&mut self) -> Vec3 {
+    pub(crate) fn in_cube(&mut self) -> Vec3 {
         Vec3::new(self.unit(), self.unit(), self.unit()) * 2.0 - 1.0
     }
 
     /// A direction, uniform over the sphere.
-    pub fn direction(&mut self) -> Vec3 {
+    pub(crate) fn direction(&mut self) -> Vec3 {
         loop {
             let v = self.in_cube();
             let length = v.length();
@@ -46,23 +46,23 @@ impl Random {
     }
 }
 
-pub fn settings(kind: BvhKind, leaf_size: u32) -> BvhSettings {
+pub(crate) fn settings(kind: BvhKind, leaf_size: u32) -> BvhSettings {
     BvhSettings { kind, leaf_size }
 }
 
 /// One leaf with everything: every ray meets every primitive.
-pub fn brute_force(shapes: Shapes) -> Aggregate {
+pub(crate) fn brute_force(shapes: Shapes) -> Aggregate {
     Aggregate::build(shapes, settings(BvhKind::None, 1))
 }
 
-pub fn closest(aggregate: &Aggregate, rays: &[Ray]) -> Vec<Hit> {
+pub(crate) fn closest(aggregate: &Aggregate, rays: &[Ray]) -> Vec<Hit> {
     let mut hits = vec![Hit::MISS; rays.len()];
     aggregate.closest_hit(rays, &mut hits, &mut TraceCounts::default());
     hits
 }
 
 /// The hit as bits, so that -0 and NaN cannot hide.
-pub fn bits(hit: &Hit) -> (u32, u32, u32, u32) {
+pub(crate) fn bits(hit: &Hit) -> (u32, u32, u32, u32) {
     let Hit {
         t,
         primitive,
@@ -73,7 +73,7 @@ pub fn bits(hit: &Hit) -> (u32, u32, u32, u32) {
 }
 
 /// A closed sphere-like mesh with `n` × `n` cells around the origin; `radius(i, j)` per vertex.
-pub fn closed_sphere(n: usize, radius: impl Fn(usize, usize) -> f32) -> Shapes {
+pub(crate) fn closed_sphere(n: usize, radius: impl Fn(usize, usize) -> f32) -> Shapes {
     use std::f32::consts::{PI, TAU};
     let mut positions = vec![Vec3::Z * radius(0, 0), Vec3::NEG_Z * radius(n, 0)];
     for i in 1..n {
@@ -113,16 +113,16 @@ pub fn closed_sphere(n: usize, radius: impl Fn(usize, usize) -> f32) -> Shapes {
     }
 }
 
-pub fn smooth_sphere() -> Shapes {
+pub(crate) fn smooth_sphere() -> Shapes {
     closed_sphere(16, |_, _| 1.0)
 }
 
-pub fn spiky_sphere() -> Shapes {
+pub(crate) fn spiky_sphere() -> Shapes {
     closed_sphere(16, |i, j| if (i + j) % 2 == 0 { 1.0 } else { 0.4 })
 }
 
 /// The cube from -1 to 1, twelve triangles.
-pub fn cube() -> Shapes {
+pub(crate) fn cube() -> Shapes {
     let positions = (0..8)
         .map(|i| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32) * 2.0 - 1.0)
         .collect();
@@ -146,7 +146,7 @@ pub fn cube() -> Shapes {
 }
 
 /// Triangles without shared vertices.
-pub fn soup(corners: impl IntoIterator<Item = [Vec3; 3]>) -> Shapes {
+pub(crate) fn soup(corners: impl IntoIterator<Item = [Vec3; 3]>) -> Shapes {
     let positions: Vec<_> = corners.into_iter().flatten().collect();
     let triangles = (0..positions.len() as u32 / 3)
         .map(|i| [3 * i, 3 * i + 1, 3 * i + 2])
@@ -159,7 +159,7 @@ pub fn soup(corners: impl IntoIterator<Item = [Vec3; 3]>) -> Shapes {
 }
 
 /// `n` random triangles of edge length about `size` in the unit cube.
-pub fn random_soup(n: usize, size: f32, seed: u64) -> Shapes {
+pub(crate) fn random_soup(n: usize, size: f32, seed: u64) -> Shapes {
     let mut random = Random::new(seed);
     soup((0..n).map(|_| {
         let center = random.in_cube();
@@ -168,7 +168,7 @@ pub fn random_soup(n: usize, size: f32, seed: u64) -> Shapes {
 }
 
 /// Triangles and spheres mixed.
-pub fn mixed(n: usize) -> Shapes {
+pub(crate) fn mixed(n: usize) -> Shapes {
     let mut random = Random::new(77);
     let spheres = (0..n).map(|_| Sphere {
         center: random.in_cube(),
@@ -182,7 +182,7 @@ pub fn mixed(n: usize) -> Shapes {
 }
 
 /// Rays through the unit cube, some parallel to axes, some with long directions and bounds.
-pub fn random_rays(n: usize, seed: u64) -> Vec<Ray> {
+pub(crate) fn random_rays(n: usize, seed: u64) -> Vec<Ray> {
     let mut random = Random::new(seed);
     (0..n)
         .map(|i| {
@@ -210,7 +210,7 @@ pub fn random_rays(n: usize, seed: u64) -> Vec<Ray> {
 }
 
 /// `Vec3` with one component replaced.
-pub trait WithAxis {
+pub(crate) trait WithAxis {
     fn with_axis(self, axis: usize, value: f32) -> Self;
 }
 

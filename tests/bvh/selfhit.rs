@@ -19,13 +19,16 @@ fn rotated_cube(scale: f32) -> Shapes {
 
 /// A direction on the side of `normal`; one in five at a cosine of 1e-6 to 1e-1.
 fn leaving(random: &mut Random, normal: Vec3) -> Vec3 {
-    let d = random.direction();
-    let d = if d.dot(normal) < 0.0 { -d } else { d };
-    if random.unit() < 0.2 {
-        let along = (d - normal * d.dot(normal)).normalize();
-        return (along + normal * 10.0_f32.powf(-1.0 - 5.0 * random.unit())).normalize();
+    loop {
+        let mut d = random.direction();
+        if random.unit() < 0.2 {
+            let along = (d - normal * d.dot(normal)).normalize();
+            d = (along + normal * 10.0_f32.powf(-1.0 - 5.0 * random.unit())).normalize();
+        }
+        if d.dot(normal) > 0.0 {
+            return d;
+        }
     }
-    d
 }
 
 #[test]
