@@ -23,6 +23,7 @@ pub use output_path::{append_extension, check_writable, numbered_path};
 pub use pfm::{read_pfm, write_pfm};
 pub use png_file::{read_png, write_png};
 pub use radiance::{read_hdr, write_hdr};
+pub(super) use whole_file::write_whole;
 
 use crate::color::Rgb;
 use crate::image::Image;

@@ -8,7 +8,7 @@ use super::OutputError;
 
 /// Writes a file so that it appears whole or not at all: into a temporary file of the same folder,
 /// which takes the name at the end. An existing file is replaced in that last step.
-pub(super) fn write_whole(
+pub(in crate::io) fn write_whole(
     path: &Path,
     write: impl FnOnce(&mut BufWriter<&mut File>) -> Result<(), OutputError>,
 ) -> Result<(), OutputError> {
