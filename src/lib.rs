@@ -1,4 +1,64 @@
-//! softbox: a progressive path tracer for the CPU, without a window.
+//! softbox: an interactive progressive path tracer for the CPU. This page is the architecture.
+//!
+//! # Bird's-eye view
+//! A file becomes a [`scene::Scene`] (plain, editable, double precision). [`scene::prepare`] makes
+//! it a [`scene::PreparedScene`] (immutable, single precision, recentred and scaled to unit size).
+//! A [`session::RenderSession`] takes [`session::RenderJob`]s (scene, camera, settings), renders
+//! passes over the tiles of a [`film::Film`] on its own threads, and publishes
+//! [`session::Snapshot`]s. The window and the command line are two faces over the same session.
+//!
+//! # Floors
+//! A module uses only modules on lower floors; `tests/architecture.rs` holds it to that.
+//! ```text
+//!  8  bin/softbox      the program: viewer and headless
+//!  7  session   io     session never reads files; io never renders
+//!  6  integrator       one path
+//!  5  scene            description → runtime
+//!  4  light  display  settings
+//!  3  geometry  bsdf  camera  film
+//!  2  bvh  image
+//!  1  sampling
+//!  0  math  color
+//! ```
+//!
+//! # One sample
+//! ```text
+//! pass (all tiles once)                                            session
+//!  └ tile: batches of paths, each a (pixel, sample number)         session, film
+//!     └ start: camera ray                                          integrator, camera
+//!        trace a batch of rays for their closest hits              geometry → bvh
+//!        arrive: emission, surface, material                       scene, light, bsdf
+//!        direct light: shadow rays, traced as a batch for any hit  light, geometry
+//!        scatter: next ray, Russian roulette                       bsdf, sampling
+//!     add the finished paths in the order of their numbers         film
+//! pass done → snapshot → host                                      session
+//! ```
+//!
+//! # Invariants
+//! - A sample is a pure function of (scene, settings, seed, pixel, sample number). Random numbers
+//!   are addressed by bounce and [`sampling::Slot`], never drawn in sequence. Threads, tiles,
+//!   passes and pauses change no bit of the picture.
+//! - [`integrator::reference()`] and [`integrator::Wavefront`] give the same bits.
+//! - Tracing is a batch: [`geometry::Aggregate::closest_hit`], [`geometry::Aggregate::any_hit`].
+//!   It is watertight, and gives what testing every primitive gives, bit for bit.
+//! - [`scene::PreparedScene`] is immutable and shared by `Arc`.
+//! - No module below the program knows windows, threads (but for `session`), the clock (but for
+//!   `session` and build times) or files (but for `io`).
+//! - The host says every frame what it wants to see; only `session` decides what that costs.
+//! - Radiance that is NaN, infinite or negative never reaches the film; it is counted.
+//!
+//! # Conventions
+//! Linear Rec.709 radiance; radians; y up in the world, y down in pictures. `wo` and `wi` point
+//! away from the surface. `eval` has no cosine. Depth counts bounces: 0 is emission seen directly.
+//!
+//! # Where a change goes
+//! | to add | touch |
+//! |---|---|
+//! | a material | `bsdf/`: its file and variant; `scene::Surface`; `io` reads it; a chi-square case |
+//! | a light | `light/`: its file and variant; `scene::LightKind`; a chi-square case |
+//! | a setting | [`settings`]; a flag in the program's `args`, a row in a panel |
+//! | a file format | `io/`: a file, and a line where the extension is looked up |
+//! | a faster traversal | `bvh/`, `geometry/aggregate.rs`; callers see the batch interface |
 
 pub mod bsdf;
 pub mod bvh;

@@ -5,6 +5,7 @@ use glam::{DMat4, DVec3};
 use super::{
     FieldOfView, FileCamera, Geometry, Instance, LightKind, LightNode, Material, Scene, Surface,
 };
+use crate::camera::Camera;
 use crate::color::Rgb;
 use crate::geometry::{Corner, Mesh, MeshTriangle};
 
@@ -146,7 +147,7 @@ impl SceneBuilder {
     pub fn camera(&mut self, eye: DVec3, target: DVec3, fov_x: f64) {
         self.scene.cameras.push(FileCamera {
             name: "camera".to_owned(),
-            world_from_camera: DMat4::look_at_rh(eye, target, DVec3::Y).inverse(),
+            world_from_camera: looking_at(eye, target),
             fov: FieldOfView {
                 x: Some(fov_x),
                 y: None,
@@ -154,4 +155,19 @@ impl SceneBuilder {
             },
         });
     }
+}
+
+fn looking_at(eye: DVec3, target: DVec3) -> DMat4 {
+    let camera = Camera {
+        eye,
+        target,
+        ..Camera::default()
+    };
+    let (right, up, back) = camera.basis();
+    DMat4::from_cols(
+        right.extend(0.0),
+        up.extend(0.0),
+        back.extend(0.0),
+        eye.extend(1.0),
+    )
 }
