@@ -71,7 +71,6 @@ pub mod image;
 pub mod integrator;
 pub mod io;
 pub mod light;
-pub mod io;
 pub mod math;
 pub mod sampling;
 pub mod scene;
