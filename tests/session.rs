@@ -5,8 +5,12 @@ use std::time::{Duration, Instant};
 
 use softbox::camera::Camera;
 use softbox::scene::{Scene, cornell_box, initial_camera};
-use softbox::session::{RenderJob, RenderSession, SampleCounts, SessionOptions, SessionState, Snapshot, StopReason};
-use softbox::settings::{Adaptive, AdaptiveRule, CameraRule, IntegratorKind, Mode, RenderSettings, StopRule, View};
+use softbox::session::{
+    RenderJob, RenderSession, SampleCounts, SessionOptions, SessionState, Snapshot, StopReason,
+};
+use softbox::settings::{
+    Adaptive, AdaptiveRule, CameraRule, IntegratorKind, Mode, RenderSettings, StopRule, View,
+};
 
 const PATIENCE: Duration = Duration::from_secs(60);
 
@@ -24,7 +28,10 @@ fn job(scene: &Arc<Scene>, samples: u32) -> RenderJob {
         settings: RenderSettings {
             width: 70,
             height: 50,
-            stop: StopRule { samples_per_pixel: Some(samples), ..StopRule::default() },
+            stop: StopRule {
+                samples_per_pixel: Some(samples),
+                ..StopRule::default()
+            },
             ..RenderSettings::default()
         },
     }
@@ -50,7 +57,11 @@ fn render(job: RenderJob, interactive: bool) -> Arc<Snapshot> {
 }
 
 fn bits(snapshot: &Snapshot) -> Vec<[u32; 3]> {
-    snapshot.pixels.iter().map(|p| p.to_array().map(f32::to_bits)).collect()
+    snapshot
+        .pixels
+        .iter()
+        .map(|p| p.to_array().map(f32::to_bits))
+        .collect()
 }
 
 #[test]
@@ -61,14 +72,21 @@ fn thread_count_changes_no_bit() {
     for threads in [1, 2, 3, 8] {
         let mut job = job(&scene, 12);
         job.settings.threads = threads;
-        assert_eq!(bits(&render(job, false)), bits(&reference), "{threads} threads");
+        assert_eq!(
+            bits(&render(job, false)),
+            bits(&reference),
+            "{threads} threads"
+        );
     }
 }
 
 #[test]
 fn window_and_headless_agree() {
     let scene = scene();
-    assert_eq!(bits(&render(job(&scene, 9), true)), bits(&render(job(&scene, 9), false)));
+    assert_eq!(
+        bits(&render(job(&scene, 9), true)),
+        bits(&render(job(&scene, 9), false))
+    );
 }
 
 #[test]
@@ -93,11 +111,16 @@ fn pauses_and_split_passes_change_no_bit() {
         session.request(job(&scene, target));
         session.pause();
         wait_until("a pause", || {
-            matches!(session.status().state, SessionState::Paused | SessionState::Finished(_))
+            matches!(
+                session.status().state,
+                SessionState::Paused | SessionState::Finished(_)
+            )
         });
         session.resume();
         let reached = |s: Arc<Snapshot>| !s.is_preview && s.samples_mean >= f64::from(target);
-        wait_until("the next samples", || session.snapshot().is_some_and(reached));
+        wait_until("the next samples", || {
+            session.snapshot().is_some_and(reached)
+        });
     }
     assert_eq!(bits(&finish(&session)), bits(&whole));
 }
@@ -108,21 +131,31 @@ fn the_latest_job_wins_and_no_stale_picture_follows() {
     let session = RenderSession::new(SessionOptions { interactive: true }, || ());
     let mut last = job(&scene, 4);
     for i in 0..200 {
-        last.camera = Camera { eye: last.camera.eye + glam::DVec3::X * 0.001, ..last.camera };
+        last.camera = Camera {
+            eye: last.camera.eye + glam::DVec3::X * 0.001,
+            ..last.camera
+        };
         session.request(last.clone());
         if i % 10 == 0 {
             std::thread::sleep(Duration::from_millis(1));
         }
     }
     wait_until("the last picture", || {
-        session.status().is_finished() && session.snapshot().is_some_and(|s| s.camera == last.camera && !s.is_preview)
+        session.status().is_finished()
+            && session
+                .snapshot()
+                .is_some_and(|s| s.camera == last.camera && !s.is_preview)
     });
     let shown = session.snapshot().expect("a picture");
     assert_eq!(bits(&shown), bits(&render(last.clone(), false)));
     let generation = shown.generation;
     session.request(last);
     std::thread::sleep(Duration::from_millis(30));
-    assert_eq!(session.snapshot().map(|s| s.generation), Some(generation), "an equal job does nothing");
+    assert_eq!(
+        session.snapshot().map(|s| s.generation),
+        Some(generation),
+        "an equal job does nothing"
+    );
 }
 
 #[test]
@@ -137,14 +170,24 @@ fn a_change_of_view_keeps_the_film() {
     session.request(normals);
     wait_until("the normals", || {
         session.status().state == SessionState::Finished(StopReason::FirstHit)
-            && session.snapshot().is_some_and(|s| s.view == View::Normals && !s.is_preview)
+            && session
+                .snapshot()
+                .is_some_and(|s| s.view == View::Normals && !s.is_preview)
     });
     let rays = session.status().counts.camera_rays;
     session.request(render_job);
-    wait_until("the render again", || session.snapshot().is_some_and(|s| s.view == View::Render && !s.is_preview));
+    wait_until("the render again", || {
+        session
+            .snapshot()
+            .is_some_and(|s| s.view == View::Render && !s.is_preview)
+    });
     let again = finish(&session);
     assert_eq!(bits(&again), bits(&first));
-    assert_eq!(session.status().counts.camera_rays, rays, "no sample was taken twice");
+    assert_eq!(
+        session.status().counts.camera_rays,
+        rays,
+        "no sample was taken twice"
+    );
 }
 
 #[test]
@@ -152,17 +195,28 @@ fn a_region_renders_the_same_pixels_and_nothing_else() {
     let scene = scene();
     let whole = render(job(&scene, 5), false);
     let mut part = job(&scene, 5);
-    let region = softbox::image::Region { x: 11, y: 7, width: 40, height: 35 };
+    let region = softbox::image::Region {
+        x: 11,
+        y: 7,
+        width: 40,
+        height: 35,
+    };
     part.settings.region = Some(region);
     let part = render(part, false);
     for y in 0..50 {
         for x in 0..70 {
             let i = (y * 70 + x) as usize;
-            let expected = if region.contains(x, y) { whole.pixels[i] } else { glam::Vec3::ZERO };
+            let expected = if region.contains(x, y) {
+                whole.pixels[i]
+            } else {
+                glam::Vec3::ZERO
+            };
             assert_eq!(part.pixels[i], expected);
         }
     }
-    let SampleCounts::PerPixel(counts) = &part.samples else { panic!("counts differ by pixel") };
+    let SampleCounts::PerPixel(counts) = &part.samples else {
+        panic!("counts differ by pixel")
+    };
     assert_eq!(counts.iter().filter(|&&n| n == 5).count(), 40 * 35);
 }
 
@@ -170,28 +224,47 @@ fn a_region_renders_the_same_pixels_and_nothing_else() {
 fn adaptive_sampling_does_not_depend_on_threads_and_ends_early_where_it_can() {
     let scene = scene();
     let mut adaptive = job(&scene, 512);
-    adaptive.settings.adaptive = Some(Adaptive { batch: 16, tolerance: 0.2, rule: AdaptiveRule::Neighbourhood });
+    adaptive.settings.adaptive = Some(Adaptive {
+        batch: 16,
+        tolerance: 0.2,
+        rule: AdaptiveRule::Neighbourhood,
+    });
     adaptive.settings.threads = 1;
     let one = render(adaptive.clone(), false);
     adaptive.settings.threads = 3;
     let three = render(adaptive, true);
     assert_eq!(bits(&one), bits(&three));
     assert_eq!(one.samples, three.samples);
-    assert!(one.samples_mean < 500.0 && one.samples_mean >= 64.0, "{}", one.samples_mean);
+    assert!(
+        one.samples_mean < 500.0 && one.samples_mean >= 64.0,
+        "{}",
+        one.samples_mean
+    );
 }
 
 #[test]
 fn stop_by_error_and_by_time() {
     let scene = scene();
     let mut by_error = job(&scene, 100_000);
-    by_error.settings.stop = StopRule { relative_error: Some(0.2), ..StopRule::default() };
+    by_error.settings.stop = StopRule {
+        relative_error: Some(0.2),
+        ..StopRule::default()
+    };
     let session = RenderSession::new(SessionOptions::default(), || ());
     session.request(by_error);
     let picture = finish(&session);
-    assert_eq!(session.status().state, SessionState::Finished(StopReason::Error));
+    assert_eq!(
+        session.status().state,
+        SessionState::Finished(StopReason::Error)
+    );
     assert!(picture.relative_error.is_some_and(|e| e <= 0.2));
     let mut by_time = job(&scene, 1);
-    by_time.settings.stop = StopRule { seconds: Some(0.05), ..StopRule::default() };
+    by_time.settings.stop = StopRule {
+        seconds: Some(0.05),
+        ..StopRule::default()
+    };
     session.request(by_time);
-    wait_until("the time limit", || session.status().state == SessionState::Finished(StopReason::Seconds));
+    wait_until("the time limit", || {
+        session.status().state == SessionState::Finished(StopReason::Seconds)
+    });
 }
