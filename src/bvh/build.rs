@@ -3,8 +3,9 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Instant;
 
 use super::node::{Child, Pair};
+use super::range::{Extents, PrimitiveRef, split_at_median};
+use super::sah::BinnedSplit;
 use super::slab::padded;
-use super::split::{BinnedSplit, Extents, PrimitiveRef, split_at_median};
 use super::tree::Bvh;
 use super::{BvhKind, BvhSettings};
 use crate::math::Aabb;
@@ -19,7 +20,9 @@ const HALVING_DEPTH: usize = 60;
 const SERIAL: usize = 4096;
 
 /// Cost of visiting an inner node, in units of testing one primitive.
-pub(super) const NODE_COST: f32 = 1.0;
+///
+/// Of 0.5, 1 and 2, the largest gave the fastest rays on fine meshes and the smallest trees.
+pub(super) const NODE_COST: f32 = 2.0;
 
 impl Bvh {
     /// Builds the tree over `boxes`. Boxes that are empty or not finite stay outside.
@@ -67,7 +70,7 @@ impl Bvh {
         pairs.shrink_to_fit();
         let order: Vec<_> = refs.iter().map(|r| r.id).collect();
         let excluded = boxes.len() - order.len();
-        Some(Self::from_parts(pairs, order, excluded, start.elapsed()))
+        Some(Self::from_parts(pairs, order, excluded, start))
     }
 }
 

@@ -1,7 +1,8 @@
 //! Floor 2: the bounding volume hierarchy over boxes. Knows no shape: leaves are tested through a
 //! trait that the caller implements.
 //!
-//! The traversal never loses a primitive to rounding. Boxes are padded ([`padded`]), the box test
+//! The binary tree ([`Bvh`]) is what is built, shown and counted; the traversal walks the same boxes
+//! four at a time. It never loses a primitive to rounding: boxes are padded ([`padded`]), the box test
 //! has a margin, and every operation in it rounds monotonically, so that a ray that meets a padded
 //! box also meets, in floating point, every box around it. A caller that keeps a hit only if the
 //! ray meets the primitive's own padded box, and never reports it in front of that box
@@ -9,12 +10,14 @@
 
 mod build;
 mod node;
+mod range;
+mod sah;
 mod settings;
 mod slab;
-mod split;
 mod stats;
 mod traverse;
 mod tree;
+mod wide;
 
 pub use settings::{BvhKind, BvhSettings};
 pub use slab::{SlabRay, T_FAR, padded};

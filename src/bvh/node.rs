@@ -25,15 +25,15 @@ impl Child {
     };
 }
 
-/// Two sibling nodes of 32 bytes each, in one cache line and one box test.
+/// Two sibling nodes of 32 bytes each, in one cache line.
 ///
 /// Lanes of the planes: minimum of left and right, maximum of left and right.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(super) struct Pair {
-    pub(super) planes: [Vec4; 3],
-    pub(super) first: [u32; 2],
-    pub(super) count: [u32; 2],
+    planes: [Vec4; 3],
+    first: [u32; 2],
+    count: [u32; 2],
 }
 
 impl Pair {

@@ -1,22 +1,24 @@
-use glam::{Vec3, Vec4, Vec4Swizzles};
+use glam::{Vec3, Vec4};
 
-use super::node::Pair;
+use super::wide::Wide;
 use crate::math::{Aabb, Ray, gamma};
 
 /// Nothing at or beyond this ray parameter is ever reported.
 ///
-/// Far below `f32::MAX` / [`MIN_PAD`], so that a ray parallel to a slab is decided by the side of
-/// its origin alone.
+/// Far below `f32::MAX` times the least padding, so that a ray parallel to a slab is decided by the
+/// side of its origin alone.
 pub const T_FAR: f32 = 1e18;
 
 /// Least distance by which a box is padded.
 const MIN_PAD: f32 = 1e-20;
 
-/// A primitive's own test may be off by a few roundings of numbers as large as the primitive …
+/// Padding as a fraction of the longest edge: a primitive's own test may be off by a few roundings
+/// of numbers as large as the primitive.
 const PAD: f32 = gamma(16);
 
-/// … and of numbers as large as its distance. Ize 2013, "Robust BVH Ray Traversal", derives
-/// 1 + 2γ(3) for the roundings of the box test alone; the rest is for the primitive test.
+/// Factor on the far end of the interval: the primitive's own test may be off by a few roundings of
+/// numbers as large as its distance too. Ize 2013, "Robust BVH Ray Traversal", derives 1 + 2γ(3)
+/// for the roundings of the box test alone.
 const FAR_MARGIN: f32 = 1.0 + 2.0 * gamma(8);
 
 /// The box that stands for `bounds` in the tree: slightly larger on every side, never flat.
@@ -41,6 +43,8 @@ pub fn padded(bounds: Aabb) -> Aabb {
 pub struct SlabRay {
     origin: Vec3,
     inverse: Vec3,
+    /// Whether the direction points down the axis.
+    negative: [bool; 3],
     t_min: f32,
     t_max: f32,
 }
@@ -49,7 +53,6 @@ impl SlabRay {
     /// Prepares `ray`; `None` when it cannot meet anything (a number that is not finite, no
     /// direction, nothing between `t_min` and `t_max`).
     pub fn new(ray: &Ray) -> Option<Self> {
-        // Sums are finite only if every term is, and a few finite terms of this size cannot overflow.
         let valid = ray.origin.is_finite()
             && ray.direction.is_finite()
             && ray.direction != Vec3::ZERO
@@ -61,6 +64,7 @@ impl SlabRay {
             inverse: (ray.direction + Vec3::ZERO)
                 .recip()
                 .clamp(Vec3::splat(-f32::MAX), Vec3::splat(f32::MAX)),
+            negative: ray.direction.to_array().map(|d| d < 0.0),
             t_min: ray.t_min,
             t_max: ray.t_max.min(T_FAR),
         })
@@ -85,25 +89,22 @@ impl SlabRay {
         (near <= far * FAR_MARGIN).then_some(near)
     }
 
-    /// Entry parameters of both boxes of a pair, and which of them the ray meets before `limit`.
+    /// Entry parameters of the boxes of a node, and a bit for each that the ray meets before
+    /// `limit`.
     ///
-    /// The same operations as [`Self::enter`], hence the same numbers.
+    /// The same operations as [`Self::enter`], hence the same numbers: of two planes of a box, the
+    /// one that the direction meets first has the smaller parameter, in floating point too.
     #[inline(always)]
-    pub(super) fn enter_pair(&self, pair: &Pair, limit: f32) -> ([f32; 2], [bool; 2]) {
-        let t = |axis: usize| {
-            (pair.planes[axis] - Vec4::splat(self.origin[axis])) * Vec4::splat(self.inverse[axis])
+    pub(super) fn enter_four(&self, node: &Wide, limit: f32) -> (Vec4, u32) {
+        let t = |axis: usize, side: bool| {
+            (node.planes[axis][usize::from(side)] - Vec4::splat(self.origin[axis]))
+                * Vec4::splat(self.inverse[axis])
         };
-        let (x, y, z) = (t(0), t(1), t(2));
-        let (xs, ys, zs) = (x.zwxy(), y.zwxy(), z.zwxy());
-        let near = x
-            .min(xs)
-            .max(y.min(ys))
-            .max(z.min(zs).max(Vec4::splat(self.t_min)));
-        let far = x
-            .max(xs)
-            .min(y.max(ys))
-            .min(z.max(zs).min(Vec4::splat(limit)));
-        let meets = near.cmple(far * FAR_MARGIN);
-        ([near.x, near.y], [meets.test(0), meets.test(1)])
+        let [x, y, z] = self.negative;
+        let near = t(0, x)
+            .max(t(1, y))
+            .max(t(2, z).max(Vec4::splat(self.t_min)));
+        let far = t(0, !x).min(t(1, !y)).min(t(2, !z).min(Vec4::splat(limit)));
+        (near, near.cmple(far * FAR_MARGIN).bitmask())
     }
 }

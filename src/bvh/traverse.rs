@@ -3,6 +3,7 @@ use std::ops::Range;
 use super::build::MAX_DEPTH;
 use super::slab::SlabRay;
 use super::tree::Bvh;
+use super::wide::WIDTH;
 
 /// What a caller does with the leaves that a ray reaches.
 pub trait Leaf {
@@ -15,12 +16,27 @@ pub trait Leaf {
 
 /// Nodes still to visit; made once for many rays.
 #[derive(Debug)]
-pub struct Stack([Entry; MAX_DEPTH]);
+pub struct Stack([Entry; STACK]);
+
+/// A wide node leaves at most all but one of its children behind when the ray goes deeper, and the
+/// wide tree is no deeper than the binary one.
+const STACK: usize = (WIDTH - 1) * MAX_DEPTH + WIDTH;
 
 impl Stack {
     /// An empty stack.
     pub fn new() -> Self {
-        Self([Entry::default(); MAX_DEPTH])
+        Self([Entry::default(); STACK])
+    }
+
+    /// Puts `entry` among the entries `begin..end`, which are sorted, nearest last.
+    #[inline(always)]
+    fn insert(&mut self, begin: usize, end: usize, entry: Entry) {
+        let mut i = end;
+        while i > begin && self.0[i - 1].near < entry.near {
+            self.0[i] = self.0[i - 1];
+            i -= 1;
+        }
+        self.0[i] = entry;
     }
 }
 
@@ -40,7 +56,7 @@ struct Entry {
 /// Work done for one ray.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Work {
-    /// Boxes tested.
+    /// Boxes tested; a node counts as four, whether or not it is full.
     pub boxes: u32,
     /// Primitives tested.
     pub primitives: u32,
@@ -52,51 +68,39 @@ impl Bvh {
     pub fn traverse(&self, ray: &SlabRay, stack: &mut Stack, leaf: &mut impl Leaf) -> Work {
         let mut work = Work::default();
         let mut limit = ray.t_max();
-        let mut depth = 0;
-        // The pair above the root: the root and nothing.
-        let mut node = Entry::default();
+        let mut open = 0;
+        let mut at = Entry::default();
         loop {
-            if node.count == 0 {
-                let pair = &self.pairs()[node.first as usize];
-                work.boxes += 2;
-                let (near, meets) = ray.enter_pair(pair, limit);
-                let entry = |side: usize| Entry {
-                    near: near[side],
-                    first: pair.first[side],
-                    count: pair.count[side],
-                };
-                match meets {
-                    [true, true] => {
-                        let right_first = near[1] < near[0];
-                        // An inner node at depth d has pushed at most d entries before it.
-                        stack.0[depth] = entry(usize::from(!right_first));
-                        depth += 1;
-                        node = entry(usize::from(right_first));
-                        continue;
-                    }
-                    [true, false] => {
-                        node = entry(0);
-                        continue;
-                    }
-                    [false, true] => {
-                        node = entry(1);
-                        continue;
-                    }
-                    [false, false] => {}
+            if at.count == 0 {
+                let node = &self.wide()[at.first as usize];
+                work.boxes += WIDTH as u32;
+                let (near, mut meets) = ray.enter_four(node, limit);
+                let near = near.to_array();
+                let begin = open;
+                while meets != 0 {
+                    let lane = meets.trailing_zeros() as usize % WIDTH;
+                    meets &= meets - 1;
+                    let entry = Entry {
+                        near: near[lane],
+                        first: node.first[lane],
+                        count: node.count[lane],
+                    };
+                    stack.insert(begin, open, entry);
+                    open += 1;
                 }
             } else {
-                work.primitives += node.count;
-                let first = node.first as usize;
-                limit = leaf.visit(first..first + node.count as usize);
+                work.primitives += at.count;
+                let first = at.first as usize;
+                limit = leaf.visit(first..first + at.count as usize);
             }
             loop {
-                if depth == 0 {
+                if open == 0 {
                     return work;
                 }
-                depth -= 1;
-                node = stack.0[depth];
+                open -= 1;
+                at = stack.0[open];
                 // Equality stays in: a hit at the same parameter may have the smaller id.
-                if node.near <= limit {
+                if at.near <= limit {
                     break;
                 }
             }

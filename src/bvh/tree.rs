@@ -1,7 +1,8 @@
 use std::ops::Range;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use super::node::{Child, Pair};
+use super::wide::{Wide, collapse};
 use crate::math::Aabb;
 
 /// Names a node of one [`Bvh`].
@@ -27,6 +28,7 @@ impl NodeId {
 pub struct Bvh {
     /// The root beside nothing, then the pairs of siblings, depth first, left before right.
     pairs: Vec<Pair>,
+    wide: Vec<Wide>,
     order: Vec<u32>,
     excluded: usize,
     build_time: Duration,
@@ -37,16 +39,23 @@ impl Bvh {
         pairs: Vec<Pair>,
         order: Vec<u32>,
         excluded: usize,
-        build_time: Duration,
+        start: Instant,
     ) -> Self {
         Self {
+            wide: collapse(&pairs),
             pairs,
             order,
             excluded,
-            build_time,
+            build_time: start.elapsed(),
         }
     }
 
+    /// What the traversal walks.
+    pub(super) fn wide(&self) -> &[Wide] {
+        &self.wide
+    }
+
+    #[cfg(test)]
     pub(super) fn pairs(&self) -> &[Pair] {
         &self.pairs
     }
@@ -81,7 +90,9 @@ impl Bvh {
 
     /// Memory of the nodes and of the order, in bytes.
     pub fn bytes(&self) -> usize {
-        size_of_val(self.pairs.as_slice()) + size_of_val(self.order.as_slice())
+        size_of_val(self.pairs.as_slice())
+            + size_of_val(self.wide.as_slice())
+            + size_of_val(self.order.as_slice())
     }
 
     /// The root; `None` if there is nothing in the tree.

@@ -54,7 +54,8 @@ impl Sphere {
         let center = self.center.as_dvec3();
         let outward = (point.as_dvec3() - center).normalize_or_zero();
         let point = (center + outward * f64::from(self.radius)).as_vec3();
-        (point, point.abs() * gamma(2))
+        // The radius counts too: the point may be exact where the test of a leaving ray is not.
+        (point, (point.abs() + Vec3::splat(self.radius)) * gamma(2))
     }
 }
 

@@ -94,13 +94,24 @@ pub(super) fn bounds(vertices: &[Vec3; 3]) -> Aabb {
 }
 
 /// The point of a triangle with barycentric weights 1 − `b1` − `b2`, `b1`, `b2`, and a bound of the
-/// absolute rounding error of each of its coordinates.
+/// absolute error of each of its coordinates, as seen by the triangle test of a ray that leaves it.
 ///
-/// Pharr, Jakob, Humphreys 2016, "Physically Based Rendering", section 3.9.4.
+/// Pharr, Jakob, Humphreys 2016, "Physically Based Rendering", section 3.9.4, bound the rounding of
+/// the point. That is zero for a plane through a zero of its coordinate, where the triangle test
+/// still rounds in proportion to the vertices seen from the point; hence the second term.
 pub fn triangle_point_and_error(vertices: &[Vec3; 3], b1: f32, b2: f32) -> (Vec3, Vec3) {
     let [a, b, c] = *vertices;
-    let (a, b, c) = (a * (1.0 - b1 - b2), b * b1, c * b2);
-    (a + b + c, (a.abs() + b.abs() + c.abs()) * gamma(7))
+    let (wa, wb, wc) = (a * (1.0 - b1 - b2), b * b1, c * b2);
+    let point = wa + wb + wc;
+    let reach = (a - point)
+        .abs()
+        .max((b - point).abs())
+        .max((c - point).abs())
+        .max_element();
+    (
+        point,
+        (wa.abs() + wb.abs() + wc.abs()) * gamma(7) + Vec3::splat(reach * gamma(8)),
+    )
 }
 
 #[cfg(test)]

@@ -160,10 +160,10 @@ impl AreaLight {
 
     /// Point, unit normal and primitive.
     fn point_on(&self, shapes: &Shapes, u_choice: f32, u: Vec2) -> Option<(Vec3, Vec3, u32)> {
-        let chosen = self.by_area.as_ref()?.sample(u_choice);
+        let (chosen, ..) = self.by_area.as_ref()?.sample(u_choice);
         match &self.shape {
             AreaShape::Triangles { primitives } => {
-                let primitive = primitives[chosen.index];
+                let primitive = primitives[chosen];
                 let [p0, p1, p2] = shapes.vertices(primitive as usize);
                 let (b1, b2) = uniform_triangle(u);
                 let (edge_1, edge_2) = (p1 - p0, p2 - p0);

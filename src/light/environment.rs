@@ -58,7 +58,7 @@ impl EnvironmentLight {
     }
 
     pub(super) fn sample(&self, u_choice: f32, u: Vec2) -> Option<LightSample> {
-        let part = self.parts.as_ref()?.sample(u_choice).index;
+        let (part, ..) = self.parts.as_ref()?.sample(u_choice);
         let wi = match (part, &self.map) {
             (SKY, _) => uniform_sphere(u),
             (AMBIENT, _) => {

@@ -20,8 +20,8 @@ impl LightSampler {
     /// are never chosen. When no light shines, index 0 with probability 0.
     pub fn sample(&self, u: f32) -> (usize, f32) {
         self.distribution.as_ref().map_or((0, 0.0), |lights| {
-            let chosen = lights.sample(u);
-            (chosen.index, chosen.pmf)
+            let (index, pmf, _) = lights.sample(u);
+            (index, pmf)
         })
     }
 

@@ -8,6 +8,9 @@ use crate::geometry::{Shapes, Sphere};
 use crate::math::Frame;
 use crate::sampling::{UNIFORM_SPHERE_PDF, uniform_cone, uniform_cone_pdf, uniform_sphere};
 
+/// Points whose distance to the centre differs from the radius by less, relatively, are on the sphere.
+const ON_SURFACE: f32 = 1e-5;
+
 /// A sphere of the scene that emits constant radiance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SphereLight {
@@ -24,7 +27,7 @@ impl SphereLight {
     /// 14.2.2). Inside: all directions evenly, if the inside emits.
     pub(super) fn sample(&self, shapes: &Shapes, from: Vec3, u: Vec2) -> Option<LightSample> {
         let sphere = shapes.sphere(self.primitive)?;
-        let placed = match Cone::seen_from(from, sphere) {
+        let placed = match self.cone(from, sphere) {
             Some(cone) => cone.sample(sphere, u),
             None if self.two_sided => sample_inside(from, sphere, u),
             None => return None,
@@ -45,11 +48,22 @@ impl SphereLight {
         let Some(sphere) = shapes.sphere(self.primitive) else {
             return 0.0;
         };
-        match Cone::seen_from(from, sphere) {
+        match self.cone(from, sphere) {
             Some(cone) if hit.normal.dot(wi) < 0.0 => uniform_cone_pdf(cone.one_minus_cos),
             None if self.two_sided => UNIFORM_SPHERE_PDF,
             _ => 0.0,
         }
+    }
+
+    /// The cone that the sphere fills as seen from `from`; `None` where the inside is sampled.
+    ///
+    /// A point on the sphere itself may have been rounded to either side. It sees nothing of a
+    /// sphere that emits outwards only, and the inside of one that emits on both sides.
+    fn cone(&self, from: Vec3, sphere: &Sphere) -> Option<Cone> {
+        let is_on_surface = (from.distance(sphere.center) / sphere.radius - 1.0).abs() < ON_SURFACE;
+        (!is_on_surface)
+            .then(|| Cone::seen_from(from, sphere))
+            .flatten()
     }
 
     pub(super) fn radiance_at(&self, normal: Vec3, wi: Vec3) -> Rgb {

@@ -1,16 +1,5 @@
 use super::ONE_MINUS_EPSILON;
 
-/// An entry chosen by [`Distribution1d::sample`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DiscreteSample {
-    /// The chosen entry.
-    pub index: usize,
-    /// The probability with which it is chosen, above 0.
-    pub pmf: f32,
-    /// The random number stretched over the chosen entry, uniform in [0, 1), to be used again.
-    pub remapped: f32,
-}
-
 /// Chooses among entries in proportion to their weights.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Distribution1d {
@@ -53,15 +42,14 @@ impl Distribution1d {
         false
     }
 
-    /// The entry that `u` in [0, 1) falls on; entries of weight zero are never chosen.
-    pub fn sample(&self, u: f32) -> DiscreteSample {
+    /// The entry that `u` in [0, 1) falls on, the probability with which it is chosen, and `u`
+    /// stretched over the entry: uniform in [0, 1) again, to be used once more.
+    ///
+    /// Entries of weight zero are never chosen.
+    pub fn sample(&self, u: f32) -> (usize, f32, f32) {
         let u = f64::from(u).clamp(0.0, f64::from(ONE_MINUS_EPSILON));
         let (index, remapped) = invert(&self.cdf, u);
-        DiscreteSample {
-            index,
-            pmf: self.pmf(index),
-            remapped,
-        }
+        (index, self.pmf(index), remapped)
     }
 
     /// The probability of entry `index`; 0 when there is no such entry.
@@ -109,10 +97,10 @@ mod tests {
         let n = 1 << 20;
         let mut counts = [0_u32; 9];
         for i in 0..n {
-            let sample = distribution.sample(i as f32 / n as f32);
-            assert_eq!(sample.pmf, distribution.pmf(sample.index));
-            assert!(sample.pmf > 0.0 && (0.0..1.0).contains(&sample.remapped));
-            counts[sample.index] += 1;
+            let (index, pmf, remapped) = distribution.sample(i as f32 / n as f32);
+            assert_eq!(pmf, distribution.pmf(index));
+            assert!(pmf > 0.0 && (0.0..1.0).contains(&remapped));
+            counts[index] += 1;
         }
         let expected = [0.0, 0.375, 0.0, 0.0, 0.125, 0.0, 0.5, 0.0, 0.0];
         for (count, share) in counts.into_iter().zip(expected) {
@@ -122,7 +110,7 @@ mod tests {
             );
         }
         for end in [0.0, ONE_MINUS_EPSILON, 1.0] {
-            assert!(distribution.sample(end).pmf > 0.0);
+            assert!(distribution.sample(end).1 > 0.0);
         }
         assert_eq!((distribution.len(), distribution.pmf(99)), (9, 0.0));
     }
@@ -133,11 +121,9 @@ mod tests {
         let distribution = Distribution1d::new(&weights).expect("some weights are positive");
         let sum: f64 = (0..1000).map(|i| f64::from(distribution.pmf(i))).sum();
         assert!((sum - 1.0).abs() < 1e-6);
-        let sample = distribution.sample(0.4321);
-        let below: f64 = (0..sample.index)
-            .map(|i| f64::from(distribution.pmf(i)))
-            .sum();
-        let back = below + f64::from(sample.remapped * sample.pmf);
+        let (index, pmf, remapped) = distribution.sample(0.4321);
+        let below: f64 = (0..index).map(|i| f64::from(distribution.pmf(i))).sum();
+        let back = below + f64::from(remapped * pmf);
         assert!((back - 0.4321).abs() < 1e-6);
     }
 }

@@ -49,14 +49,14 @@ impl Distribution2d {
 
     /// A point of the unit square and its density there, above 0; `u` in [0, 1)².
     pub fn sample_continuous(&self, u: Vec2) -> (Vec2, f32) {
-        let row = self.rows.sample(u.y);
+        let (row, _, remapped_row) = self.rows.sample(u.y);
         let u_column = f64::from(u.x).clamp(0.0, f64::from(ONE_MINUS_EPSILON));
-        let (column, remapped) = invert(self.row(row.index), u_column);
+        let (column, remapped) = invert(self.row(row), u_column);
         let uv = Vec2::new(
             in_cell(column, remapped, self.width),
-            in_cell(row.index, row.remapped, self.rows.len()),
+            in_cell(row, remapped_row, self.rows.len()),
         );
-        (uv, self.cell_pdf(column, row.index))
+        (uv, self.cell_pdf(column, row))
     }
 
     /// The density at `uv` with respect to the area of the unit square.

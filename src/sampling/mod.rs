@@ -7,7 +7,7 @@ mod heuristic;
 mod path_sampler;
 mod warp;
 
-pub use distribution_1d::{DiscreteSample, Distribution1d};
+pub use distribution_1d::Distribution1d;
 pub use distribution_2d::Distribution2d;
 pub use heuristic::power_heuristic;
 pub use path_sampler::{PathSampler, Slot};

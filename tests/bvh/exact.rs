@@ -128,17 +128,15 @@ fn g4_the_sign_of_zero_does_not_matter() {
         hits += usize::from(!plain.is_miss());
         for signs in 0..64 {
             let signed = |v: Vec3, shift: usize| {
-                let mut v = v;
-                for axis in 0..3 {
-                    if v[axis] == 0.0 {
-                        v[axis] = if signs >> (axis + shift) & 1 == 1 {
-                            -0.0
-                        } else {
-                            0.0
-                        };
+                let zero = |axis: usize| {
+                    if signs >> (axis + shift) & 1 == 1 {
+                        -0.0
+                    } else {
+                        0.0
                     }
-                }
-                v
+                };
+                let pick = |axis: usize| if v[axis] == 0.0 { zero(axis) } else { v[axis] };
+                Vec3::new(pick(0), pick(1), pick(2))
             };
             let ray = Ray::new(signed(origin, 3), signed(direction, 0));
             assert_eq!(bits(&aggregate.closest(&ray)), bits(&plain), "{ray:?}");

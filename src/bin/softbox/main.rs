@@ -1,22 +1,56 @@
-//! The program.
+//! The program: `softbox [SCENE]` opens the window, everything else works without one.
+
+mod args;
+mod command_line;
+mod compare;
+mod course_args;
+mod exit;
+mod info;
+mod job;
+#[cfg(not(feature = "viewer"))]
+mod no_viewer;
+mod place_camera;
+#[cfg_attr(
+    not(test),
+    expect(dead_code, reason = "reports once `render` calls the session")
+)]
+mod progress;
+mod render;
+mod settings_args;
+mod values;
 #[cfg(feature = "viewer")]
 mod viewer;
 
-fn main() -> anyhow::Result<()> {
-    let scene = std::sync::Arc::new(softbox::scene::procedural("torus-knot").unwrap_or_default());
-    let mut options = viewer::ViewerOptions::default();
-    let mut args = std::env::args().skip(1);
-    while let Some(arg) = args.next() {
-        match arg.as_str() {
-            "--exit-after" => {
-                options.exit_after = args
-                    .next()
-                    .and_then(|s| s.parse().ok())
-                    .map(std::time::Duration::from_secs_f64)
-            }
-            "--log-events" => options.logs_events = true,
-            path => options.scene = Some(path.into()),
+use std::io::Write;
+use std::process::ExitCode;
+
+use args::Request;
+use exit::Failure;
+#[cfg(not(feature = "viewer"))]
+use no_viewer as viewer;
+
+fn main() -> ExitCode {
+    let request = match args::parse(std::env::args_os()) {
+        Ok(request) => request,
+        // Prints to the right stream; status 2 for errors, 0 for help and version.
+        Err(error) => error.exit(),
+    };
+    match run(request) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            let mut stderr = std::io::stderr().lock();
+            // Nobody is left to tell when this fails as well.
+            let _ = writeln!(stderr, "softbox: {:#}", failure.error);
+            failure.status.into()
         }
     }
-    viewer::run(&scene, &options)
+}
+
+fn run(request: Request) -> Result<(), Failure> {
+    match request {
+        Request::View(job, options) => viewer::run(&job, &options),
+        Request::Render(job, reporting) => render::run(&job, &reporting),
+        Request::Info(info) => info::run(&info),
+        Request::Compare(compare) => compare::run(&compare),
+    }
 }

@@ -81,4 +81,29 @@ mod tests {
         let half_flat = mean_flip(&flat(Rgb::splat(0.4)), &flat(Rgb::splat(0.3))) / 2.0;
         assert!(with_edge > half_flat, "{with_edge} {half_flat}");
     }
+
+    /// A picture with smooth colours and hard edges, moved to the right by `shift` columns (what
+    /// leaves comes back on the left), times `gain`.
+    fn pattern(shift: usize, gain: f32) -> Image<Rgb> {
+        const WIDTH: usize = 120;
+        let pixel = |i: usize| {
+            let (x, y) = ((i % WIDTH + WIDTH - shift) % WIDTH, i / WIDTH);
+            let checker = (x / 15 + y / 15) % 2;
+            let red = 0.5 + 0.5 * (x as f64 / 9.0).sin();
+            let green = 0.5 + 0.5 * (y as f64 / 7.0).cos();
+            glam::DVec3::new(red, green, checker as f64 * 0.7 + 0.1).as_vec3() * gain
+        };
+        Image::from_pixels(WIDTH, 90, (0..WIDTH * 90).map(pixel).collect())
+    }
+
+    /// Figures of the authors' own program (flip-evaluator, default observer) for the same
+    /// pictures.
+    #[test]
+    fn the_figures_are_those_of_the_authors() {
+        let reference = pattern(0, 1.0);
+        for (test, expected) in [(pattern(1, 1.0), 0.172_640), (pattern(0, 0.8), 0.383_776)] {
+            let flip = mean_flip(&test, &reference);
+            assert!((flip - expected).abs() < 2e-5, "{flip} {expected}");
+        }
+    }
 }

@@ -7,6 +7,7 @@ mod controller;
 mod decode;
 mod effect;
 mod light;
+mod matrix;
 mod mesh;
 mod nodes;
 mod numbers;

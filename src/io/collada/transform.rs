@@ -1,6 +1,7 @@
 use glam::{DMat4, DQuat, DVec3, DVec4};
 use roxmltree::Node;
 
+use super::matrix::{ReadMatrix, read_matrix};
 use super::numbers;
 use super::xml::Xml;
 use crate::io::report::{Notes, Severity};
@@ -28,7 +29,7 @@ pub(super) fn parent_from_node(xml: &Xml<'_, '_>, notes: &mut Notes, node: Node<
     for element in node.children().filter(Node::is_element) {
         let name = element.tag_name().name();
         let matrix = match name {
-            "matrix" => numbers::matrix(element),
+            "matrix" => matrix(xml, notes, element),
             "translate" => numbers::vector(element).map(DMat4::from_translation),
             "rotate" => rotate(element),
             "scale" => numbers::vector(element).map(DMat4::from_scale),
@@ -65,6 +66,18 @@ pub(super) fn is_singular(matrix: &DMat4) -> bool {
     let determinant = x.dot(y.cross(z));
     // 1e-14 of the box with the same edges is rounding.
     determinant == 0.0 || determinant.abs() <= 1e-14 * volume
+}
+
+fn matrix(xml: &Xml<'_, '_>, notes: &mut Notes, element: Node<'_, '_>) -> Option<DMat4> {
+    match read_matrix(element) {
+        ReadMatrix::Whole(matrix) => Some(matrix),
+        ReadMatrix::Completed(matrix) => {
+            let message = "<matrix> has 15 numbers; the lost one was put back where the axes become perpendicular";
+            xml.note(notes, Severity::Warning, element, message);
+            Some(matrix)
+        }
+        ReadMatrix::Unreadable => None,
+    }
 }
 
 /// Axis and angle in degrees.

@@ -22,7 +22,7 @@ use super::windows::Windows;
 
 /// The viewer.
 #[derive(Debug)]
-pub(crate) struct App {
+pub(super) struct App {
     pub(super) document: Document,
     pub(super) engine: Engine,
     pub(super) view: ViewState,
@@ -30,6 +30,8 @@ pub(crate) struct App {
     pub(super) windows: Windows,
     pub(super) preferences: Preferences,
     pub(super) log: EventLog,
+    /// True until the file of the command line is open: its camera belongs to that file.
+    pub(super) is_first_scene: bool,
 }
 
 /// The picture and what happens over it.
@@ -48,7 +50,7 @@ impl App {
     ///
     /// # Errors
     /// When the system cannot start a thread.
-    pub(crate) fn new(
+    pub(super) fn new(
         cc: &eframe::CreationContext<'_>,
         scene: Arc<Scene>,
         options: ViewerOptions,
@@ -62,15 +64,12 @@ impl App {
             .settings
             .unwrap_or_else(|| preferences.settings.clone());
         let display = options.display.unwrap_or(preferences.display);
-        let rule = options.camera_rule.unwrap_or_default();
-        let mut document = Document::new(scene, settings, display, rule);
+        let mut document = Document::new(scene, settings, display, options.camera);
         document.resolution = if options.has_fixed_size {
             Resolution::Fixed
         } else {
             preferences.resolution
         };
-        document.pinned = options.camera;
-        document.reset_camera();
         let wake = ctx.clone();
         let mut app = Self {
             document,
@@ -80,6 +79,7 @@ impl App {
             windows: Windows::default(),
             preferences,
             log: EventLog::new(options.logs_events, options.exit_after),
+            is_first_scene: options.scene.is_some(),
         };
         if let Some(path) = options.scene {
             app.open(&path, false);

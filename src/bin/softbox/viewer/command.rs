@@ -22,6 +22,8 @@ pub(super) enum Command {
     SaveSnapshot,
     /// The picture to the clipboard.
     CopyImage,
+    /// The command line of the picture to the clipboard.
+    CopyCommandLine,
     /// The camera to a file beside the scene.
     DumpCamera,
     /// Leave.
@@ -94,23 +96,12 @@ pub(super) enum Command {
 
 /// Which meaning Space has.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-pub(crate) enum KeyPreset {
+pub(super) enum KeyPreset {
     /// Space pauses.
     #[default]
     Standard,
     /// Space resets the camera, as in the course's program.
     Cs184,
-}
-
-impl KeyPreset {
-    /// The preset of a name on the command line.
-    pub(crate) fn from_name(name: &str) -> Option<Self> {
-        match name {
-            "standard" => Some(Self::Standard),
-            "cs184" => Some(Self::Cs184),
-            _ => None,
-        }
-    }
 }
 
 /// A key with its modifiers. Shift is ignored where the key is a sign that may need it.

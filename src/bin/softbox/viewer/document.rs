@@ -7,9 +7,11 @@ use softbox::camera::Camera;
 use softbox::display::DisplaySettings;
 use softbox::scene::{Scene, initial_camera};
 use softbox::session::RenderJob;
-use softbox::settings::{CameraRule, Mode, RenderSettings};
+use softbox::settings::{Mode, RenderSettings};
 
 use super::history::History;
+use crate::job::CameraChoice;
+use crate::place_camera::place_camera;
 
 /// How the picture's size is chosen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -33,11 +35,9 @@ pub(super) struct Document {
     /// The settings of the display, which never restart a render.
     pub(super) display: DisplaySettings,
     /// Where "reset" finds the camera.
-    pub(super) camera_rule: CameraRule,
+    pub(super) camera_choice: CameraChoice,
     /// Who chooses the size.
     pub(super) resolution: Resolution,
-    /// A camera from the command line, which "reset" goes back to.
-    pub(super) pinned: Option<Camera>,
     /// The mode that takes turns with the hemisphere mode.
     pub(super) light_mode: Mode,
     history: History<Camera>,
@@ -50,18 +50,17 @@ impl Document {
         scene: Arc<Scene>,
         settings: RenderSettings,
         display: DisplaySettings,
-        camera_rule: CameraRule,
+        camera_choice: CameraChoice,
     ) -> Self {
-        let camera = initial_camera(&scene, camera_rule, settings.course_compatible);
+        let camera = placed(&camera_choice, &scene, &settings);
         let size = scene_size(&scene);
         Self {
             scene,
             camera,
             settings,
             display,
-            camera_rule,
+            camera_choice,
             resolution: Resolution::default(),
-            pinned: None,
             light_mode: Mode::Best,
             history: History::new(camera),
             size,
@@ -77,6 +76,14 @@ impl Document {
         }
     }
 
+    /// Forgets what the command line said about the camera of the first scene.
+    pub(super) fn forget_camera_choice(&mut self) {
+        self.camera_choice = CameraChoice {
+            rule: self.camera_choice.rule,
+            ..CameraChoice::default()
+        };
+    }
+
     /// Shows `scene` instead. `keeps_camera` for a new version of the same file.
     pub(super) fn replace_scene(&mut self, scene: Arc<Scene>, keeps_camera: bool) {
         self.size = scene_size(&scene);
@@ -90,13 +97,7 @@ impl Document {
 
     /// Back to the camera with which the scene was opened.
     pub(super) fn reset_camera(&mut self) {
-        self.camera = self.pinned.unwrap_or_else(|| {
-            initial_camera(
-                &self.scene,
-                self.camera_rule,
-                self.settings.course_compatible,
-            )
-        });
+        self.camera = placed(&self.camera_choice, &self.scene, &self.settings);
     }
 
     /// Makes the picture as large as a view of `pixels`, as far as the graphics driver allows.
@@ -137,6 +138,16 @@ impl Document {
     pub(super) fn name(&self) -> &str {
         &self.scene.name
     }
+}
+
+/// The chosen camera; a camera file that has become unreadable counts as not given.
+fn placed(choice: &CameraChoice, scene: &Scene, settings: &RenderSettings) -> Camera {
+    let choice = CameraChoice {
+        crops: choice.crops || settings.course_compatible,
+        ..choice.clone()
+    };
+    place_camera(&choice, scene, [settings.width, settings.height])
+        .unwrap_or_else(|_| initial_camera(scene, choice.rule, choice.crops))
 }
 
 fn scene_size(scene: &Scene) -> f64 {

@@ -40,6 +40,7 @@ impl App {
             }
             Command::SaveSnapshot => self.save_snapshot(),
             Command::CopyImage => self.copy_image(ctx),
+            Command::CopyCommandLine => self.copy_command_line(ctx),
             Command::DumpCamera => self.dump_camera(ctx),
             Command::Quit => ctx.send_viewport_cmd(ViewportCommand::Close),
             Command::Restart => {
@@ -166,6 +167,10 @@ impl App {
 
     fn show_scene(&mut self, scene: Scene, is_reload: bool) {
         let path: Option<PathBuf> = scene.path.clone();
+        let is_first = std::mem::take(&mut self.is_first_scene);
+        if !is_reload && !is_first {
+            self.document.forget_camera_choice();
+        }
         self.document.replace_scene(Arc::new(scene), is_reload);
         self.view.viewport.region_tool = RegionTool::Off;
         self.windows.messages.close();
@@ -206,6 +211,21 @@ impl App {
             ctx.copy_image((*frame.image).clone());
             self.windows.messages.tell("Picture copied", ctx.time());
         }
+    }
+
+    fn copy_command_line(&mut self, ctx: &Context) {
+        let document = &self.document;
+        let samples = self.engine.status().samples_mean.ceil() as u32;
+        let settings = document.settings.clone();
+        ctx.copy_text(provenance::command_line(
+            document,
+            &document.camera,
+            settings,
+            samples,
+        ));
+        self.windows
+            .messages
+            .tell("Command line copied", ctx.time());
     }
 
     fn dump_camera(&mut self, ctx: &Context) {

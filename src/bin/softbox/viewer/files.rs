@@ -3,6 +3,7 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, channel};
+use std::thread::JoinHandle;
 
 use eframe::egui::Context;
 use softbox::io::ImportReport;
@@ -33,7 +34,7 @@ pub(super) struct Files {
     sender: Sender<FileEvent>,
     inbox: Receiver<FileEvent>,
     has_dialog: bool,
-    is_writing: bool,
+    writer: Option<JoinHandle<()>>,
     /// The report of the open file.
     pub(super) report: Option<ImportReport>,
 }
@@ -49,7 +50,7 @@ impl Files {
             sender,
             inbox,
             has_dialog: false,
-            is_writing: false,
+            writer: None,
             report: None,
         }
     }
@@ -96,8 +97,7 @@ impl Files {
         for event in &events {
             match event {
                 FileEvent::Chosen(_) => self.has_dialog = false,
-                FileEvent::Written(_) => self.is_writing = false,
-                FileEvent::Load(_) | FileEvent::Changed => {}
+                FileEvent::Load(_) | FileEvent::Written(_) | FileEvent::Changed => {}
             }
         }
         events.extend(self.loader.poll().map(FileEvent::Load));
@@ -135,17 +135,35 @@ impl Files {
 
     /// Writes a picture; the answer comes as an event.
     pub(super) fn write(&mut self, request: SnapshotRequest) {
+        // One after the other, so that numbers are given in order.
+        let before = self.writer.take();
         let (sender, wake) = (self.sender.clone(), self.wake());
         let thread = std::thread::Builder::new().name("picture writer".to_owned());
         let spawned = thread.spawn(move || {
+            finish(before);
             drop(sender.send(FileEvent::Written(write_snapshot(&request))));
             wake();
         });
-        self.is_writing = spawned.is_ok();
+        match spawned {
+            Ok(writer) => self.writer = Some(writer),
+            Err(error) => {
+                let sentence = format!("cannot start a thread to write the picture: {error}");
+                drop(self.sender.send(FileEvent::Written(Err(sentence))));
+            }
+        }
     }
+}
 
-    /// True until the last picture is on the disk.
-    pub(super) fn is_writing(&self) -> bool {
-        self.is_writing
+impl Drop for Files {
+    /// Waits for the last picture.
+    fn drop(&mut self) {
+        finish(self.writer.take());
+    }
+}
+
+fn finish(thread: Option<JoinHandle<()>>) {
+    if let Some(thread) = thread {
+        // A panic there was reported by the panic hook.
+        drop(thread.join());
     }
 }

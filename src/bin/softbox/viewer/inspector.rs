@@ -44,11 +44,6 @@ impl Picker {
         Self { prepared }
     }
 
-    /// The prepared scene.
-    pub(super) fn prepared(&self) -> Option<&PreparedScene> {
-        self.prepared.as_deref()
-    }
-
     /// The first surface under a point of the screen, seen through the middle of the lens.
     pub(super) fn pick(
         &self,

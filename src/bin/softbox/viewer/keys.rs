@@ -1,7 +1,7 @@
 //! The keys: the course's own, kept whole, and the common ones. Menus, shortcuts and the key sheet
 //! all read this one table.
 
-use eframe::egui::{self, Context, Event, Key, Modifiers};
+use eframe::egui::{Context, Event, Key, Modifiers};
 use softbox::settings::View;
 
 use super::command::{Binding, Chord, Command, Group, KeyPreset};
@@ -60,6 +60,11 @@ fn files() -> Vec<Binding> {
             &[(NONE, Key::S), (CTRL, Key::S), (NONE, Key::F12)],
         ),
         file(C::CopyImage, "Copy picture", &[(CTRL, Key::C)]),
+        file(
+            C::CopyCommandLine,
+            "Copy command line",
+            &[(CTRL_SHIFT, Key::C)],
+        ),
         file(C::DumpCamera, "Write camera file", &[(NONE, Key::D)]),
         file(C::Quit, "Quit", &[(CTRL, Key::Q)]),
     ]
@@ -199,9 +204,30 @@ pub(super) fn view_title(view: View) -> &'static str {
     }
 }
 
-/// The chord as people read it, "Ctrl+S".
+/// The chord as people read it, "Ctrl+S" or "[".
 pub(super) fn chord_text(ctx: &Context, chord: Chord) -> String {
-    ctx.format_shortcut(&egui::KeyboardShortcut::new(chord.modifiers, chord.key))
+    let key = match chord.key {
+        Key::OpenBracket => "[",
+        Key::CloseBracket => "]",
+        Key::Minus => "-",
+        Key::Plus => "+",
+        Key::Equals => "=",
+        Key::Comma => ",",
+        Key::Period => ".",
+        Key::Semicolon => ";",
+        Key::Quote => "'",
+        Key::Backtick => "`",
+        Key::Questionmark => "?",
+        Key::ArrowUp => "Up",
+        Key::ArrowLeft => "Left",
+        Key::ArrowRight => "Right",
+        Key::Escape => "Esc",
+        key => key.name(),
+    };
+    match ctx.format_modifiers(chord.modifiers).as_str() {
+        "" => key.to_owned(),
+        modifiers => format!("{modifiers}+{key}"),
+    }
 }
 
 /// The command whose keys were pressed in this frame, taking the key presses out of the input.

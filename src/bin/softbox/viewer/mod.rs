@@ -35,6 +35,4 @@ mod watcher;
 mod window;
 mod windows;
 
-pub(crate) use command::KeyPreset;
-pub(crate) use options::{Backend, ViewerOptions};
 pub(crate) use window::run;

@@ -7,9 +7,43 @@ use softbox::camera::Camera;
 use softbox::io::camera_file::{CameraFile, write_camera_file};
 use softbox::io::picture::{Metadata, append_extension, numbered_path};
 use softbox::session::Snapshot;
+use softbox::settings::{RenderSettings, StopRule};
 
 use super::document::Document;
 use super::snapshot_file::folder;
+use crate::job::{CameraChoice, FieldOfView, Job};
+
+/// The command line that renders the picture of `camera` and `settings` again without a window,
+/// with as many `samples` per pixel where the settings set no end.
+pub(super) fn command_line(
+    document: &Document,
+    camera: &Camera,
+    mut settings: RenderSettings,
+    samples: u32,
+) -> String {
+    let stop = &mut settings.stop;
+    if *stop == StopRule::default() {
+        stop.samples_per_pixel = Some(samples.max(1));
+    }
+    let (half_width, _) = camera.half_extent(settings.width, settings.height);
+    let job = Job {
+        scene: document.scene.path.clone(),
+        outputs: vec![format!("{}.png", document.name()).into()],
+        settings,
+        camera: CameraChoice {
+            eye: Some(camera.eye),
+            target: Some(camera.target),
+            up: (camera.up != DVec3::Y).then_some(camera.up),
+            fov: Some(FieldOfView::X((2.0 * half_width.atan()).to_degrees())),
+            lens_radius: (camera.lens_radius > 0.0).then_some(camera.lens_radius),
+            focal_distance: (camera.lens_radius > 0.0).then_some(camera.focal_distance),
+            ..CameraChoice::default()
+        },
+        display: document.display,
+        ..Job::default()
+    };
+    crate::command_line::command_line(&job)
+}
 
 /// The words that go into the files of a picture.
 pub(super) fn metadata(document: &Document, snapshot: &Snapshot) -> Metadata {
@@ -19,6 +53,13 @@ pub(super) fn metadata(document: &Document, snapshot: &Snapshot) -> Metadata {
     metadata.set("seed", snapshot.settings.seed.to_string());
     metadata.set("samples-mean", snapshot.samples_mean.to_string());
     metadata.set("samples-max", snapshot.samples_max.to_string());
+    let command = command_line(
+        document,
+        &snapshot.camera,
+        snapshot.settings.clone(),
+        snapshot.samples_max,
+    );
+    metadata.set(Metadata::COMMAND, command);
     metadata.set("seconds", format!("{:.3}", snapshot.seconds));
     metadata.set("view", snapshot.view.name());
     if let Some(error) = snapshot.relative_error {

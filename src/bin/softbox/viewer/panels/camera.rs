@@ -55,7 +55,7 @@ pub(in crate::viewer) fn show(ui: &mut Ui, document: &mut Document, commands: &m
         if choice(
             ui,
             ("Comes from", help),
-            &mut document.camera_rule,
+            &mut document.camera_choice.rule,
             &RULES,
             rule_name,
         ) {

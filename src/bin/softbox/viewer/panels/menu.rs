@@ -77,6 +77,7 @@ impl Menu<'_> {
         for command in [
             Command::SaveSnapshot,
             Command::CopyImage,
+            Command::CopyCommandLine,
             Command::DumpCamera,
         ] {
             self.item(ui, &command, commands);

@@ -34,11 +34,6 @@ impl Messages {
         self.news = Some((sentence.into(), now + NEWS));
     }
 
-    /// The error on the screen.
-    pub(in crate::viewer) fn error(&self) -> Option<&str> {
-        self.error.as_deref()
-    }
-
     /// Closes the error. True when there was one.
     pub(in crate::viewer) fn close(&mut self) -> bool {
         self.error.take().is_some()

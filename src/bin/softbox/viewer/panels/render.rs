@@ -56,6 +56,7 @@ fn depth(ui: &mut Ui, depth: &mut MaxDepth) {
     let help = "Largest number of bounces at surfaces: 0 shows the lights alone, 1 direct light.";
     let name = ui.label("Bounces").on_hover_text(help);
     ui.horizontal(|ui| {
+        ui.spacing_mut().slider_width = 74.0;
         let mut is_infinite = *depth == MaxDepth::INFINITE;
         if !is_infinite {
             ui.add(Slider::new(&mut depth.0, 0..=DEPTH_SLIDER).logarithmic(true))

@@ -1,0 +1,122 @@
+//! Mean and standard error of the radiance of many paths.
+
+use std::ops::ControlFlow;
+
+use glam::DVec3;
+use rayon::prelude::*;
+use softbox::camera::{Camera, Framing, RayCamera};
+use softbox::integrator::{BATCH_SIZE, PathCounts, PathId, PathSettings, PathTracer, Wavefront};
+use softbox::scene::{PrepareSettings, PreparedScene, Scene, prepare};
+use softbox::settings::{MaxDepth, Mode};
+
+/// Mean of many samples and its standard error, per channel.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Estimate {
+    pub n: f64,
+    pub sum: [f64; 3],
+    pub sum_of_squares: [f64; 3],
+}
+
+impl Estimate {
+    pub fn add(&mut self, x: [f32; 3]) {
+        self.n += 1.0;
+        for (c, &x) in x.iter().enumerate() {
+            self.sum[c] += f64::from(x);
+            self.sum_of_squares[c] += f64::from(x) * f64::from(x);
+        }
+    }
+
+    pub fn merge(mut self, other: Self) -> Self {
+        self.n += other.n;
+        for c in 0..3 {
+            self.sum[c] += other.sum[c];
+            self.sum_of_squares[c] += other.sum_of_squares[c];
+        }
+        self
+    }
+
+    pub fn mean(&self, c: usize) -> f64 {
+        self.sum[c] / self.n
+    }
+
+    pub fn standard_error(&self, c: usize) -> f64 {
+        let variance = (self.sum_of_squares[c] / self.n - self.mean(c).powi(2)).max(0.0);
+        (variance / (self.n - 1.0)).sqrt()
+    }
+}
+
+pub fn prepared(scene: &Scene) -> PreparedScene {
+    prepare(scene, &PrepareSettings::default(), &|_, _| {
+        ControlFlow::Continue(())
+    })
+    .expect("nothing asks it to stop")
+}
+
+pub fn settings(mode: Mode, max_depth: MaxDepth) -> PathSettings {
+    PathSettings {
+        mode,
+        light_samples: 1,
+        max_depth,
+        only_last_bounce: false,
+        seed: 1,
+    }
+}
+
+pub fn camera(eye: DVec3, target: DVec3, fov_x_degrees: f64) -> Camera {
+    let up = if (target - eye).normalize().y.abs() > 0.99 {
+        DVec3::Z
+    } else {
+        DVec3::Y
+    };
+    Camera {
+        eye,
+        target,
+        up,
+        framing: Framing::Horizontal(fov_x_degrees.to_radians()),
+        ..Camera::default()
+    }
+}
+
+/// Radiance over a picture of one pixel.
+pub fn measure(
+    scene: &PreparedScene,
+    camera: &Camera,
+    settings: PathSettings,
+    samples: u32,
+) -> Estimate {
+    blocks(scene, camera, settings, (1, 1), samples)[0]
+}
+
+/// Radiance over each pixel of a picture of `size` pixels.
+pub fn blocks(
+    scene: &PreparedScene,
+    camera: &Camera,
+    settings: PathSettings,
+    size: (u32, u32),
+    samples: u32,
+) -> Vec<Estimate> {
+    let camera = RayCamera::new(camera, size.0, size.1, scene.normalization());
+    let tracer = PathTracer::new(scene, &camera, settings);
+    (0..size.0 * size.1)
+        .into_par_iter()
+        .map(|pixel| {
+            let ids: Vec<PathId> = (0..samples)
+                .map(|sample| PathId {
+                    pixel: [pixel % size.0, pixel / size.0],
+                    sample,
+                })
+                .collect();
+            ids.par_chunks(BATCH_SIZE)
+                .map(|ids| {
+                    let mut radiance = vec![glam::Vec3::ZERO; ids.len()];
+                    let mut counts = PathCounts::default();
+                    Wavefront::default().trace(&tracer, ids, &mut radiance, &mut counts);
+                    assert_eq!(counts.invalid_samples, 0);
+                    let mut estimate = Estimate::default();
+                    radiance.iter().for_each(|r| estimate.add(r.to_array()));
+                    estimate
+                })
+                .reduce(Estimate::default, Estimate::merge)
+        })
+        .collect()
+}
