@@ -94,6 +94,15 @@ pub(crate) struct WindowArgs {
     /// Graphics interface of the window: glow or wgpu; the other one if it fails
     #[arg(long, value_name = "NAME", value_parser = ["glow", "wgpu"])]
     pub(crate) renderer: Option<String>,
+    /// Meaning of the Space key: standard pauses, cs184 resets the camera as in the course
+    #[arg(long, value_name = "PRESET", value_parser = ["standard", "cs184"])]
+    pub(crate) keys: Option<String>,
+    /// Close the window after this time
+    #[arg(long, value_name = "SECONDS")]
+    pub(crate) exit_after: Option<f64>,
+    /// Write a line of state to standard error whenever something changes in the window
+    #[arg(long)]
+    pub(crate) log_events: bool,
 }
 
 /// How a headless run speaks. Results go to standard output, all else to standard error.

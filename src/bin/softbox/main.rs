@@ -7,6 +7,9 @@ mod course_args;
 mod exit;
 mod info;
 mod job;
+#[cfg(not(feature = "viewer"))]
+mod no_viewer;
+mod place_camera;
 #[cfg_attr(
     not(test),
     expect(dead_code, reason = "reports once `render` calls the session")
@@ -15,6 +18,7 @@ mod progress;
 mod render;
 mod settings_args;
 mod values;
+#[cfg(feature = "viewer")]
 mod viewer;
 
 use std::io::Write;
@@ -22,6 +26,8 @@ use std::process::ExitCode;
 
 use args::Request;
 use exit::Failure;
+#[cfg(not(feature = "viewer"))]
+use no_viewer as viewer;
 
 fn main() -> ExitCode {
     let request = match args::parse(std::env::args_os()) {

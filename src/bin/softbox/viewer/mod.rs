@@ -1,0 +1,38 @@
+//! The window. `App` composes: the document says what is open, the engine renders it, panels show
+//! and change it, keys and menus make commands that are carried out in one place.
+//!
+//! ```text
+//!  keys, menus, panels ─ commands ─> execute ─> document ─ job every frame ─> session
+//!  viewport <─ mailbox <─ presenter (tone mapping) <─ snapshot <─────────────────┘
+//! ```
+
+mod adjust;
+mod app;
+mod bvh_view;
+mod command;
+mod document;
+mod engine;
+mod event_log;
+mod execute;
+mod files;
+mod history;
+mod inspector;
+mod keys;
+mod letterbox;
+mod loader;
+mod navigation;
+mod options;
+mod orbit;
+mod panels;
+mod preferences;
+mod presenter;
+mod projection;
+mod provenance;
+mod shown;
+mod snapshot_file;
+mod viewport;
+mod watcher;
+mod window;
+mod windows;
+
+pub(crate) use window::run;

@@ -1,0 +1,204 @@
+//! How the picture is computed.
+
+use eframe::egui::{self, DragValue, Slider, Ui};
+use softbox::bvh::BvhKind;
+use softbox::settings::{Adaptive, AdaptiveRule, IntegratorKind, MaxDepth, Mode, RenderSettings};
+
+use super::{choice, optional, row, section};
+use crate::viewer::document::Resolution;
+
+/// The deepest path that the slider reaches; beyond there is only "no limit".
+const DEPTH_SLIDER: u32 = 100;
+/// The depth that unticking "no limit" gives.
+const DEPTH: u32 = 5;
+
+/// The settings of the estimator.
+pub(in crate::viewer) fn show(ui: &mut Ui, settings: &mut RenderSettings) {
+    section(ui, "Render", true, |ui| {
+        let help = "How direct light is estimated. All three converge to the same picture.";
+        choice(
+            ui,
+            ("Mode", help),
+            &mut settings.mode,
+            &Mode::ALL,
+            Mode::name,
+        );
+        row(
+            ui,
+            "Light samples",
+            "Samples of each area light at every surface point.",
+            Slider::new(&mut settings.light_samples, 1..=256).logarithmic(true),
+        );
+        depth(ui, &mut settings.max_depth);
+        row(
+            ui,
+            "Only last bounce",
+            "Keep only the light that took exactly the largest number of bounces.",
+            egui::Checkbox::without_text(&mut settings.only_last_bounce),
+        );
+        row(
+            ui,
+            "Course-compatible",
+            "Repeat the picture of the course's program on purpose, with its errors.",
+            egui::Checkbox::without_text(&mut settings.course_compatible),
+        );
+        adaptive(ui, &mut settings.adaptive);
+        row(
+            ui,
+            "Seed",
+            "The same seed gives the same picture, bit for bit.",
+            DragValue::new(&mut settings.seed),
+        );
+    });
+}
+
+fn depth(ui: &mut Ui, depth: &mut MaxDepth) {
+    let help = "Largest number of bounces at surfaces: 0 shows the lights alone, 1 direct light.";
+    let name = ui.label("Bounces").on_hover_text(help);
+    ui.horizontal(|ui| {
+        ui.spacing_mut().slider_width = 74.0;
+        let mut is_infinite = *depth == MaxDepth::INFINITE;
+        if !is_infinite {
+            ui.add(Slider::new(&mut depth.0, 0..=DEPTH_SLIDER).logarithmic(true))
+                .labelled_by(name.id)
+                .on_hover_text(help);
+        }
+        let help = "Paths end by chance alone.";
+        if ui
+            .checkbox(&mut is_infinite, "no limit")
+            .on_hover_text(help)
+            .changed()
+        {
+            *depth = if is_infinite {
+                MaxDepth::INFINITE
+            } else {
+                MaxDepth(DEPTH)
+            };
+        }
+    });
+    ui.end_row();
+}
+
+fn adaptive(ui: &mut Ui, adaptive: &mut Option<Adaptive>) {
+    let help =
+        "Stop each pixel when its 95 % confidence interval is narrow enough. Slightly biased.";
+    let first = Adaptive {
+        batch: 32,
+        tolerance: 0.05,
+        rule: AdaptiveRule::default(),
+    };
+    optional(ui, ("Adaptive", help), adaptive, first, |ui, adaptive| {
+        ui.add(
+            Slider::new(&mut adaptive.tolerance, 0.001..=1.0)
+                .logarithmic(true)
+                .custom_formatter(|value, _| format!("{:.1} %", value * 100.0))
+                .custom_parser(parse_percent),
+        )
+        .accessible_name("Tolerance")
+    });
+    if let Some(adaptive) = adaptive {
+        row(
+            ui,
+            "   batch",
+            "Samples between two decisions.",
+            DragValue::new(&mut adaptive.batch).range(2..=4096),
+        );
+        let rules = [AdaptiveRule::Neighbourhood, AdaptiveRule::Course];
+        let help = "Neighbourhood looks at all channels of 3×3 pixels; course at each pixel alone.";
+        choice(
+            ui,
+            ("   rule", help),
+            &mut adaptive.rule,
+            &rules,
+            |rule| match rule {
+                AdaptiveRule::Course => "course",
+                AdaptiveRule::Neighbourhood => "neighbourhood",
+            },
+        );
+    }
+}
+
+/// A fraction from "5", "5%" or "5 %".
+pub(super) fn parse_percent(text: &str) -> Option<f64> {
+    let number: f64 = text.trim().trim_end_matches('%').trim().parse().ok()?;
+    Some(number / 100.0)
+}
+
+/// The settings that change the work but not what is seen.
+pub(in crate::viewer) fn machine(ui: &mut Ui, settings: &mut RenderSettings) {
+    section(ui, "Machine", false, |ui| {
+        let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+        let most = cores.max(settings.threads);
+        row(
+            ui,
+            "Threads",
+            "Worker threads; 0 uses all cores. Never changes the picture.",
+            Slider::new(&mut settings.threads, 0..=most),
+        );
+        let kinds = [IntegratorKind::Wavefront, IntegratorKind::Reference];
+        let help = "Wavefront is fast; reference follows one path at a time. Same random numbers.";
+        choice(
+            ui,
+            ("Path tracer", help),
+            &mut settings.integrator,
+            &kinds,
+            |kind| match kind {
+                IntegratorKind::Wavefront => "wavefront",
+                IntegratorKind::Reference => "reference",
+            },
+        );
+        let kinds = [BvhKind::Sah, BvhKind::Median, BvhKind::None];
+        let help = "How the tree of boxes is split; without one, every ray meets every primitive.";
+        choice(
+            ui,
+            ("BVH", help),
+            &mut settings.bvh.kind,
+            &kinds,
+            |kind| match kind {
+                BvhKind::None => "none",
+                BvhKind::Median => "median",
+                BvhKind::Sah => "surface area",
+            },
+        );
+        row(
+            ui,
+            "Leaf size",
+            "Most primitives in one leaf of the tree.",
+            Slider::new(&mut settings.bvh.leaf_size, 1..=64).logarithmic(true),
+        );
+    });
+}
+
+/// The size of the picture.
+pub(in crate::viewer) fn size(
+    ui: &mut Ui,
+    settings: &mut RenderSettings,
+    resolution: &mut Resolution,
+) {
+    section(ui, "Picture size", false, |ui| {
+        let both = [Resolution::FollowWindow, Resolution::Fixed];
+        choice(
+            ui,
+            ("Size", "Who chooses the size."),
+            resolution,
+            &both,
+            |who| match who {
+                Resolution::FollowWindow => "follows the window",
+                Resolution::Fixed => "fixed",
+            },
+        );
+        let is_fixed = *resolution == Resolution::Fixed;
+        for (label, value) in [
+            ("Width", &mut settings.width),
+            ("Height", &mut settings.height),
+        ] {
+            let name = ui.label(label);
+            ui.add_enabled(
+                is_fixed,
+                DragValue::new(value).range(1..=16_384).suffix(" px"),
+            )
+            .labelled_by(name.id);
+            ui.end_row();
+        }
+    });
+}

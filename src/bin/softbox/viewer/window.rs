@@ -1,0 +1,85 @@
+//! Opening the window, with one drawing interface or the other.
+
+use std::sync::Arc;
+
+use anyhow::anyhow;
+use eframe::egui::ViewportBuilder;
+use eframe::{NativeOptions, Renderer};
+use softbox::io::camera_file::read_camera_file;
+use softbox::scene::procedural;
+
+use super::app::App;
+use super::options::{Backend, ViewerOptions};
+use crate::args::WindowArgs;
+use crate::exit::{Failure, Status};
+use crate::job::Job;
+use crate::render::check_readable;
+
+/// Identifies the window to the desktop and names the folder of the stored preferences.
+const APP_ID: &str = "softbox";
+
+/// The scene that is shown when no file is named.
+const BUILT_IN: &str = "knot-70k";
+
+/// Opens the window on `job` until it is closed.
+///
+/// # Errors
+/// When the scene or the camera file cannot be opened, or when no drawing interface works; the
+/// sentence then names the way without a window.
+pub(crate) fn run(job: &Job, window: &WindowArgs) -> Result<(), Failure> {
+    if let Some(scene) = &job.scene {
+        check_readable(scene)?;
+    }
+    if let Some(file) = &job.camera.file {
+        read_camera_file(file).map_err(Status::Scene.because())?;
+    }
+    // While a file is being read there is nothing to show.
+    let built_in = || procedural(BUILT_IN).unwrap_or_default();
+    let scene = Arc::new(job.scene.as_ref().map_or_else(built_in, |_| <_>::default()));
+    let options = &ViewerOptions::new(job, window);
+    let mut failures = Vec::new();
+    for renderer in renderers(options.backend) {
+        let scene = Arc::clone(&scene);
+        let for_app = options.clone();
+        let result = eframe::run_native(
+            APP_ID,
+            native_options(renderer),
+            Box::new(move |cc| Ok(Box::new(App::new(cc, scene, for_app)?))),
+        );
+        match result {
+            Ok(()) => return Ok(()),
+            Err(error) => failures.push(format!("{renderer}: {error}")),
+        }
+    }
+    Err(Status::Failed.because()(anyhow!(
+        "The window cannot be opened ({}). Render without one: softbox render SCENE -o OUT.png",
+        failures.join("; ")
+    )))
+}
+
+/// The compiled renderers, the preferred one first.
+fn renderers(preferred: Backend) -> Vec<Renderer> {
+    let mut renderers = Vec::new();
+    #[cfg(feature = "glow")]
+    renderers.push((Backend::Glow, Renderer::Glow));
+    #[cfg(feature = "wgpu")]
+    renderers.push((Backend::Wgpu, Renderer::Wgpu));
+    renderers.sort_by_key(|(backend, _)| *backend != preferred);
+    renderers
+        .into_iter()
+        .map(|(_, renderer)| renderer)
+        .collect()
+}
+
+fn native_options(renderer: Renderer) -> NativeOptions {
+    NativeOptions {
+        renderer,
+        viewport: ViewportBuilder::default()
+            .with_title("softbox")
+            .with_app_id(APP_ID)
+            .with_inner_size([1280.0, 820.0])
+            .with_min_inner_size([640.0, 400.0])
+            .with_drag_and_drop(true),
+        ..NativeOptions::default()
+    }
+}
