@@ -450,10 +450,20 @@ fn c13_delta_lights_have_no_variance() {
 #[test]
 fn light_trapped_between_perfect_mirrors_ends() {
     let mut builder = SceneBuilder::new("mirrors");
-    let mirror = builder.surface("mirror", Surface::Mirror { reflectance: Rgb::ONE });
+    let mirror = builder.surface(
+        "mirror",
+        Surface::Mirror {
+            reflectance: Rgb::ONE,
+        },
+    );
     builder.sphere("room", DVec3::ZERO, 1.0, mirror);
     let scene = prepared(&builder.finish());
     let camera = camera(DVec3::new(0.2, 0.1, 0.0), DVec3::X, 60.0);
-    let estimate = measure(&scene, &camera, settings(Mode::Best, MaxDepth::INFINITE), 1000);
+    let estimate = measure(
+        &scene,
+        &camera,
+        settings(Mode::Best, MaxDepth::INFINITE),
+        1000,
+    );
     assert_eq!(estimate.mean(0), 0.0, "no light was let in");
 }

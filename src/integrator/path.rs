@@ -248,7 +248,11 @@ fn vertex(mut surface: SurfaceInteraction, wo: Vec3, bsdf: &Bsdf) -> Vertex<'_> 
 
 /// Russian roulette by throughput; survivors are divided by their probability, so the mean stays.
 fn survives(path: &mut Path, u: f32) -> bool {
-    let most = if path.bounce < TRAPPED_AFTER { 1.0 } else { TRAPPED_SURVIVAL };
+    let most = if path.bounce < TRAPPED_AFTER {
+        1.0
+    } else {
+        TRAPPED_SURVIVAL
+    };
     let survival = path.throughput.max_element().clamp(MIN_SURVIVAL, most);
     if u >= survival {
         return false;

@@ -66,4 +66,9 @@ impl SessionStatus {
     pub fn is_finished(&self) -> bool {
         matches!(self.state, SessionState::Finished(_))
     }
+
+    /// True when the session has come to rest after [`super::RenderSession::pause`].
+    pub fn is_held(&self) -> bool {
+        self.is_finished() || self.state == SessionState::Paused
+    }
 }

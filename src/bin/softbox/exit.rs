@@ -5,10 +5,14 @@ use std::process::ExitCode;
 pub(crate) enum Status {
     /// Something went wrong while running.
     Failed = 1,
+    /// What was asked for makes no sense.
+    Usage = 2,
     /// The scene cannot be read.
     Scene = 3,
     /// An output cannot be written.
     Output = 4,
+    /// Ctrl+C, after writing what there is.
+    Interrupted = 130,
 }
 
 impl From<Status> for ExitCode {

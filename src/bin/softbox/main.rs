@@ -9,14 +9,14 @@ mod info;
 mod job;
 #[cfg(not(feature = "viewer"))]
 mod no_viewer;
+mod open;
 mod place_camera;
-#[cfg_attr(
-    not(test),
-    expect(dead_code, reason = "reports once `render` calls the session")
-)]
 mod progress;
+mod provenance;
 mod render;
+mod report;
 mod settings_args;
+mod shown;
 mod values;
 #[cfg(feature = "viewer")]
 mod viewer;

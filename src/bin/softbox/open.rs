@@ -45,5 +45,8 @@ pub(crate) fn open_path(path: &Path) -> Result<Loaded, Failure> {
 /// Reads a picture of the surroundings.
 fn environment_map(path: &PathBuf) -> anyhow::Result<EnvironmentMap> {
     let picture = read_environment(path)?;
-    Ok(EnvironmentMap { path: path.clone(), image: Arc::new(picture.image) })
+    Ok(EnvironmentMap {
+        path: path.clone(),
+        image: Arc::new(picture.image),
+    })
 }
