@@ -235,3 +235,21 @@ fn one_polygon_with_many_corners_does_not_hold_the_reader_up() {
     let loaded = load_bytes(text.as_bytes()).expect("a scene");
     assert_eq!(loaded.report.read.triangles, n);
 }
+
+/// Four thousand sources that share one array of ninety thousand numbers would fill gigabytes.
+#[test]
+fn shared_arrays_do_not_fill_the_memory() {
+    let numbers = "0 0 1 ".repeat(30_000);
+    let mut mesh = format!("<float_array id='shared'>{numbers}</float_array>");
+    for i in 0..4000 {
+        mesh += &format!(
+            "<source id='s{i}'><technique_common><accessor source='#shared' stride='3'/></technique_common></source>\
+             <triangles><input semantic='POSITION' source='#s{i}'/><p>0 1 2</p></triangles>"
+        );
+    }
+    let libraries = format!(
+        "<library_geometries><geometry id='g'><mesh>{mesh}</mesh></geometry></library_geometries>"
+    );
+    let text = document(&libraries, PLACE);
+    assert!(warned("shared array", &text, "shared too often") < 100);
+}

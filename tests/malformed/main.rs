@@ -5,6 +5,7 @@
 mod collada_text;
 mod faces;
 mod files;
+mod mutations;
 mod nodes;
 mod text;
 

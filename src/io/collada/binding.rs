@@ -12,6 +12,8 @@ use crate::scene::Material;
 pub(super) struct Materials {
     pub(super) list: Vec<Material>,
     by_element: HashMap<NodeId, usize>,
+    /// What an instance element binds; nodes that are instanced repeat it.
+    by_instance: HashMap<NodeId, Vec<usize>>,
     default: Option<usize>,
 }
 
@@ -25,14 +27,19 @@ impl Materials {
         instance: Node<'_, '_>,
         symbols: &[Option<String>],
     ) -> Vec<usize> {
+        if let Some(known) = self.by_instance.get(&instance.id()) {
+            return known.clone();
+        }
         let bound: Vec<Node<'_, '_>> = instance
             .descendants()
             .filter(|node| node.tag_name().name() == "instance_material")
             .collect();
         let slots = symbols.iter();
-        slots
+        let indices: Vec<usize> = slots
             .map(|symbol| self.bind_slot(xml, notes, instance, &bound, symbol.as_deref()))
-            .collect()
+            .collect();
+        self.by_instance.insert(instance.id(), indices.clone());
+        indices
     }
 
     fn bind_slot(

@@ -20,7 +20,7 @@ pub(super) fn read_matrix(element: Node<'_, '_>) -> ReadMatrix {
     if let Some(matrix) = numbers::matrix(element) {
         return ReadMatrix::Whole(matrix);
     }
-    let is_one_short = numbers::words(element).count() == 15;
+    let is_one_short = numbers::words(element).take(16).count() == 15;
     let completed = numbers::array::<15>(element)
         .filter(|_| is_one_short)
         .and_then(complete);

@@ -1,3 +1,5 @@
+use std::collections::HashMap;
+
 use glam::DMat4;
 use roxmltree::{Node, NodeId};
 
@@ -10,12 +12,14 @@ use crate::color::Rgb;
 use crate::io::ImportError;
 use crate::io::progress::{LoadStage, Reporter};
 use crate::io::report::{Notes, Severity};
-use crate::scene::{FileCamera, LightKind, LightNode};
+use crate::scene::{FieldOfView, FileCamera, LightKind, LightNode};
 
 /// The deepest nesting of nodes that is followed.
 const DEPTH_LIMIT: usize = 400;
 /// The most nodes that are visited, counting every instance.
 const NODE_LIMIT: usize = 1_000_000;
+/// The most elements inside nodes that are looked at, counting every instance.
+const ELEMENT_LIMIT: usize = 20 * NODE_LIMIT;
 
 /// A geometry in its place, before it is read.
 pub(super) struct Placement<'a, 'input> {
@@ -55,6 +59,9 @@ pub(super) fn place_all<'a, 'input>(
         notes,
         reporter,
         path: Vec::new(),
+        elements: 0,
+        lights: HashMap::new(),
+        cameras: HashMap::new(),
         placed: Placed::default(),
     };
     for node in children(visual_scene, "node") {
@@ -69,6 +76,10 @@ struct Walk<'w, 'r, 'a, 'input> {
     reporter: &'w mut Reporter<'r>,
     /// The nodes from the root to here.
     path: Vec<NodeId>,
+    /// Elements inside nodes looked at.
+    elements: usize,
+    lights: HashMap<NodeId, Option<Light>>,
+    cameras: HashMap<NodeId, FieldOfView>,
     placed: Placed<'a, 'input>,
 }
 
@@ -85,6 +96,7 @@ impl<'a, 'input> Walk<'_, '_, 'a, 'input> {
         self.path.push(node.id());
         let world_from_node = world_from_parent * parent_from_node(self.xml, self.notes, node);
         for element in node.children().filter(Node::is_element) {
+            self.elements += 1;
             match element.tag_name().name() {
                 "node" => self.visit(element, element, world_from_node)?,
                 "instance_node" => {
@@ -131,7 +143,7 @@ impl<'a, 'input> Walk<'_, '_, 'a, 'input> {
             });
         }
         self.placed.nodes += 1;
-        if self.placed.nodes > NODE_LIMIT {
+        if self.placed.nodes > NODE_LIMIT || self.elements > ELEMENT_LIMIT {
             return Err(ImportError::TooManyNodes {
                 path: path(),
                 line: line(),
@@ -186,10 +198,11 @@ impl<'a, 'input> Walk<'_, '_, 'a, 'input> {
         instance: Node<'a, 'input>,
         world_from_light: DMat4,
     ) {
-        let light = self
-            .xml
-            .follow(self.notes, instance, "url", "light")
-            .and_then(|light| read_light(self.xml, self.notes, light));
+        let Some(light) = self.xml.follow(self.notes, instance, "url", "light") else {
+            return;
+        };
+        let known = self.lights.entry(light.id());
+        let light = *known.or_insert_with(|| read_light(self.xml, self.notes, light));
         match light {
             Some(Light::Ambient(radiance)) => self.placed.ambient += radiance,
             Some(Light::Placed(kind)) => {
@@ -219,7 +232,8 @@ impl<'a, 'input> Walk<'_, '_, 'a, 'input> {
     ) {
         let camera = self.xml.follow(self.notes, instance, "url", "camera");
         let Some(camera) = camera else { return };
-        let fov = read_camera(self.xml, self.notes, camera);
+        let known = self.cameras.entry(camera.id());
+        let fov = *known.or_insert_with(|| read_camera(self.xml, self.notes, camera));
         if self.can_place(node, &world_from_camera, is_singular(&world_from_camera)) {
             self.placed.cameras.push(FileCamera {
                 name: name_of(node),

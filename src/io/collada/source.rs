@@ -48,6 +48,12 @@ pub(super) fn read_source(
         );
         return None;
     };
+    if !xml.may_read(array) {
+        let message =
+            "the arrays of the file are shared too often; what uses this source was left out";
+        xml.note(notes, Severity::Warning, source, message);
+        return None;
+    }
     let values = numbers::floats(array);
     check_array(xml, notes, array, &values);
     let layout = layout(xml, notes, source, accessor)?;

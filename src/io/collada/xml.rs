@@ -1,5 +1,5 @@
 use std::borrow::Cow;
-use std::cell::OnceCell;
+use std::cell::{Cell, OnceCell};
 use std::collections::HashMap;
 
 use roxmltree::{Document, Node};
@@ -13,6 +13,8 @@ pub(super) struct Xml<'a, 'input> {
     /// First element with each local name and id.
     by_id: HashMap<(&'a str, &'a str), Node<'a, 'input>>,
     line_starts: OnceCell<Vec<usize>>,
+    /// Bytes of number arrays that may still be read.
+    array_bytes_left: Cell<usize>,
 }
 
 impl<'a, 'input> Xml<'a, 'input> {
@@ -24,6 +26,7 @@ impl<'a, 'input> Xml<'a, 'input> {
             text: document.input_text(),
             by_id: HashMap::new(),
             line_starts: OnceCell::new(),
+            array_bytes_left: Cell::new(document.input_text().len().saturating_mul(8)),
         };
         for node in xml.root.descendants().filter(Node::is_element) {
             let Some(id) = node.attribute("id") else {
@@ -46,6 +49,14 @@ impl<'a, 'input> Xml<'a, 'input> {
             newlines.map(|(at, _)| at).collect()
         });
         1 + starts.partition_point(|&newline| newline < node.range().start) as u32
+    }
+
+    /// Whether an array of numbers may be read. Sources may share arrays, but not so often that a
+    /// small file fills the memory: eight times its size is the limit.
+    pub(super) fn may_read(&self, array: Node<'_, '_>) -> bool {
+        let left = self.array_bytes_left.get().checked_sub(array.range().len());
+        self.array_bytes_left.set(left.unwrap_or(0));
+        left.is_some()
     }
 
     /// Adds a note about an element.

@@ -27,6 +27,7 @@ pub(super) struct MeshBuilder<'b, 'a, 'input> {
     positions_of: HashMap<NodeId, (u32, u32)>,
     normals_of: HashMap<NodeId, (u32, u32)>,
     symbols: Vec<Option<String>>,
+    slot_of: HashMap<Option<String>, u16>,
     slot: u16,
     faults: Faults,
     corners: Vec<Corner>,
@@ -50,6 +51,7 @@ impl<'b, 'a, 'input> MeshBuilder<'b, 'a, 'input> {
             positions_of: HashMap::new(),
             normals_of: HashMap::new(),
             symbols: Vec::new(),
+            slot_of: HashMap::new(),
             slot: 0,
             faults: Faults::default(),
             corners: Vec::new(),
@@ -111,15 +113,17 @@ impl<'b, 'a, 'input> MeshBuilder<'b, 'a, 'input> {
 
     /// Faces from here on have the material of that symbol; false when there are too many symbols.
     pub(super) fn use_material(&mut self, symbol: Option<&str>) -> bool {
-        let known = self.symbols.iter().position(|s| s.as_deref() == symbol);
-        let slot = known.unwrap_or(self.symbols.len());
-        let Ok(slot) = u16::try_from(slot) else {
+        let symbol = symbol.map(str::to_owned);
+        if let Some(&slot) = self.slot_of.get(&symbol) {
+            self.slot = slot;
+            return true;
+        }
+        let Ok(slot) = u16::try_from(self.symbols.len()) else {
             return false;
         };
-        if known.is_none() {
-            self.symbols.push(symbol.map(str::to_owned));
-        }
         self.slot = slot;
+        self.slot_of.insert(symbol.clone(), slot);
+        self.symbols.push(symbol);
         true
     }
 
