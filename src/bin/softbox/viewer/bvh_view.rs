@@ -80,7 +80,7 @@ impl fmt::Display for NodeFacts {
             }
             return Ok(());
         }
-        write!(f, "depth {}, primitives {}\n", self.depth, self.primitives)?;
+        writeln!(f, "depth {}, primitives {}", self.depth, self.primitives)?;
         match self.children {
             Some([left, right]) => write!(f, "split {left} | {right}"),
             None => f.write_str("a leaf"),
@@ -118,12 +118,12 @@ impl BvhView {
     }
 
     /// To the parent of the selected box.
-    pub(super) fn to_parent(&mut self) {
+    pub(super) fn select_parent(&mut self) {
         self.walk(|bvh, node| bvh.parent(node));
     }
 
     /// To the first (0) or second (1) child.
-    pub(super) fn to_child(&mut self, which: usize) {
+    pub(super) fn select_child(&mut self, which: usize) {
         self.walk(|bvh, node| bvh.children(node).map(|children| children[which]));
     }
 

@@ -79,3 +79,43 @@ impl<T: Copy + PartialEq> History<T> {
         value
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_movement_is_one_step_once_it_rests() {
+        let mut history = History::new(0);
+        for (value, now) in [(1, 0.1), (2, 0.2), (3, 0.3)] {
+            history.observe(value, now, true);
+        }
+        history.observe(3, 1.0, false);
+        history.observe(4, 2.0, false);
+        history.observe(4, 3.0, false);
+        assert_eq!(history.undo(4), 3);
+        assert_eq!(history.undo(3), 0);
+        assert_eq!(history.undo(0), 0);
+        assert_eq!(history.redo(0), 3);
+        assert_eq!(history.redo(3), 4);
+        assert_eq!(history.redo(4), 4);
+    }
+
+    #[test]
+    fn undo_in_the_middle_of_a_movement_goes_back_to_its_start() {
+        let mut history = History::new(0);
+        history.observe(7, 0.1, true);
+        assert_eq!(history.undo(7), 0);
+        assert_eq!(history.redo(0), 7);
+    }
+
+    #[test]
+    fn a_new_movement_forgets_what_was_undone() {
+        let mut history = History::new(0);
+        assert_eq!(history.undo(1), 0);
+        history.observe(5, 10.0, false);
+        history.observe(5, 11.0, false);
+        assert_eq!(history.redo(5), 5);
+        assert_eq!(history.undo(5), 0);
+    }
+}

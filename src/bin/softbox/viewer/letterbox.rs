@@ -95,3 +95,51 @@ pub(super) fn surrounding(outer: Rect, inner: Rect) -> [Rect; 4] {
         ),
     ]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_picture_as_large_as_the_view_is_shown_pixel_for_pixel() {
+        let view = Rect::from_min_size(pos2(10.3, 20.7), vec2(400.2, 300.1));
+        let shown = Letterbox::fit(view, [800, 600], 2.0);
+        assert_eq!(shown.rect.size(), vec2(400.0, 300.0));
+        let corner = shown.rect.min.to_vec2() * 2.0;
+        assert!((corner - corner.round()).length() < 1e-4);
+    }
+
+    #[test]
+    fn pixels_and_points_agree() {
+        let view = Rect::from_min_size(pos2(0.0, 0.0), vec2(640.0, 640.0));
+        let shown = Letterbox::fit(view, [64, 48], 1.0);
+        assert_eq!(shown.pixel(shown.rect.min + vec2(0.5, 0.5)), Some([0, 0]));
+        assert_eq!(shown.pixel(shown.rect.max - vec2(0.5, 0.5)), Some([63, 47]));
+        assert_eq!(shown.pixel(pos2(320.0, 10.0)), None);
+        let at = shown.screen(vec2(12.5, 40.25));
+        assert!((shown.pixel_position(at) - vec2(12.5, 40.25)).length() < 1e-4);
+    }
+
+    #[test]
+    fn a_dragged_region_lies_inside_and_comes_back_to_its_place() {
+        let view = Rect::from_min_size(pos2(0.0, 0.0), vec2(640.0, 480.0));
+        let shown = Letterbox::fit(view, [64, 48], 1.0);
+        let region = shown
+            .region_between(pos2(-50.0, 100.0), pos2(205.0, 900.0))
+            .unwrap();
+        assert_eq!(
+            (region.x, region.y, region.width, region.height),
+            (0, 10, 21, 38)
+        );
+        assert_eq!(shown.region_rect(region).min, pos2(0.0, 100.0));
+        assert_eq!(shown.region_between(pos2(5.0, 5.0), pos2(6.0, 6.0)), None);
+    }
+
+    #[test]
+    fn what_surrounds_a_region_covers_the_rest_exactly() {
+        let outer = Rect::from_min_size(pos2(0.0, 0.0), vec2(100.0, 80.0));
+        let inner = Rect::from_min_size(pos2(20.0, 10.0), vec2(30.0, 40.0));
+        let area: f32 = surrounding(outer, inner).iter().map(Rect::area).sum();
+        assert_eq!(area, 100.0 * 80.0 - 30.0 * 40.0);
+    }
+}

@@ -30,6 +30,8 @@ mod projection;
 mod provenance;
 mod shown;
 mod snapshot_file;
+#[cfg(test)]
+mod tests;
 mod viewport;
 mod watcher;
 mod window;

@@ -55,7 +55,7 @@ impl Navigation {
             {
                 move_camera(document, Gesture::Pivot(hit.point));
             }
-            if response.clicked_by(PointerButton::Secondary) && ui.input(|i| i.modifiers.ctrl) {
+            if response.clicked_by(PointerButton::Secondary) && ui.input(|i| i.modifiers.command) {
                 click = Some(Click::Focus(pointer));
             }
         }
@@ -72,10 +72,10 @@ impl Navigation {
         let delta = DVec2::new(f64::from(moved.x), f64::from(moved.y)) / height;
         let modifiers = ui.input(|i| i.modifiers);
         let dragged = |button| response.dragged_by(button);
-        self.is_looking = dragged(PointerButton::Secondary) && !modifiers.alt && !modifiers.ctrl
+        self.is_looking = dragged(PointerButton::Secondary) && !modifiers.alt && !modifiers.command
             || (response.is_pointer_button_down_on()
                 && ui.input(|i| i.pointer.secondary_down())
-                && !modifiers.ctrl
+                && !modifiers.command
                 && !modifiers.alt);
         if delta == DVec2::ZERO {
             return Vec::new();

@@ -142,3 +142,98 @@ fn fly(camera: &Camera, motion: DVec3) -> Camera {
         ..*camera
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SIZE: [u32; 2] = [800, 600];
+
+    fn camera() -> Camera {
+        Camera {
+            eye: DVec3::new(0.0, 1.0, 5.0),
+            target: DVec3::new(0.0, 1.0, 0.0),
+            ..Camera::default()
+        }
+    }
+
+    #[test]
+    fn orbiting_over_the_pole_stops_short_of_it() {
+        let mut moved = camera();
+        for _ in 0..100 {
+            moved = apply(&moved, Gesture::Orbit(DVec2::new(0.0, 0.1)), 1.0, SIZE);
+        }
+        let offset = moved.eye - moved.target;
+        let height = (offset.y / offset.length()).asin().to_degrees();
+        assert!((height - 89.5).abs() < 1e-6, "{height}");
+        let back = apply(&moved, Gesture::Orbit(DVec2::new(0.0, -0.5)), 1.0, SIZE);
+        assert!(back.eye.y < moved.eye.y && back.is_valid());
+    }
+
+    #[test]
+    fn a_full_turn_comes_back() {
+        let mut moved = camera();
+        for _ in 0..8 {
+            moved = apply(&moved, Gesture::Orbit(DVec2::new(0.25, 0.0)), 1.0, SIZE);
+        }
+        assert!(moved.eye.distance(camera().eye) < 1e-9);
+    }
+
+    #[test]
+    fn panning_moves_the_target_under_the_hand() {
+        let moved = apply(&camera(), Gesture::Pan(DVec2::new(0.0, 1.0)), 1.0, SIZE);
+        // One picture height down at the target's distance: the old target is at the lower edge.
+        let (_, half_height) = camera().half_extent(SIZE[0], SIZE[1]);
+        assert!((moved.target.y - 1.0 - 2.0 * half_height * 5.0).abs() < 1e-9);
+        assert_eq!(moved.eye - moved.target, camera().eye - camera().target);
+    }
+
+    #[test]
+    fn dolly_keeps_the_point_in_its_place_and_stops_in_front_of_it() {
+        let towards = DVec3::new(0.3, 0.8, 1.0);
+        let mut moved = camera();
+        let dolly = Gesture::Dolly {
+            towards,
+            factor: 0.5,
+        };
+        let direction = (towards - moved.eye).normalize();
+        for _ in 0..200 {
+            moved = apply(&moved, dolly, 1.0, SIZE);
+            assert!((towards - moved.eye).normalize().distance(direction) < 1e-6);
+        }
+        assert!(moved.is_valid() && moved.eye.distance(moved.target) >= 1e-5);
+    }
+
+    #[test]
+    fn looking_keeps_the_eye_and_flying_keeps_the_direction() {
+        let looked = apply(&camera(), Gesture::Look(DVec2::new(0.2, 0.1)), 1.0, SIZE);
+        assert_eq!(looked.eye, camera().eye);
+        // To the right and down.
+        assert!(looked.target.x > 0.0 && looked.target.y < 1.0);
+        let flown = apply(
+            &camera(),
+            Gesture::Fly(DVec3::new(1.0, 2.0, 3.0)),
+            1.0,
+            SIZE,
+        );
+        assert_eq!(flown.eye, DVec3::new(1.0, 3.0, 2.0));
+    }
+
+    #[test]
+    fn framing_brings_all_corners_into_the_picture() {
+        let bounds = (DVec3::splat(-2.0), DVec3::new(3.0, 4.0, 5.0));
+        let framed = frame(&camera(), bounds, SIZE);
+        let (right, up, back) = framed.basis();
+        let (half_width, half_height) = framed.half_extent(SIZE[0], SIZE[1]);
+        for i in 0..8 {
+            let pick = |bit: u32, a: f64, b: f64| if i & bit == 0 { a } else { b };
+            let (a, b) = bounds;
+            let corner = DVec3::new(pick(1, a.x, b.x), pick(2, a.y, b.y), pick(4, a.z, b.z));
+            let seen = corner - framed.eye;
+            let depth = -seen.dot(back);
+            assert!(depth > 0.0);
+            assert!((seen.dot(right) / depth).abs() <= half_width);
+            assert!((seen.dot(up) / depth).abs() <= half_height);
+        }
+    }
+}

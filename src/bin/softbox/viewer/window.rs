@@ -59,11 +59,12 @@ pub(crate) fn run(job: &Job, window: &WindowArgs) -> Result<(), Failure> {
 
 /// The compiled renderers, the preferred one first.
 fn renderers(preferred: Backend) -> Vec<Renderer> {
-    let mut renderers = Vec::new();
-    #[cfg(feature = "glow")]
-    renderers.push((Backend::Glow, Renderer::Glow));
-    #[cfg(feature = "wgpu")]
-    renderers.push((Backend::Wgpu, Renderer::Wgpu));
+    let mut renderers = vec![
+        #[cfg(feature = "glow")]
+        (Backend::Glow, Renderer::Glow),
+        #[cfg(feature = "wgpu")]
+        (Backend::Wgpu, Renderer::Wgpu),
+    ];
     renderers.sort_by_key(|(backend, _)| *backend != preferred);
     renderers
         .into_iter()

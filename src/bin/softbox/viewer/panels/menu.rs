@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use eframe::egui::{self, Button, MenuBar, Ui};
+use eframe::egui::{Button, MenuBar, ThemePreference, Ui};
 
 use crate::viewer::command::{Binding, Command, Group, KeyPreset};
 use crate::viewer::keys::chord_text;
@@ -32,13 +32,7 @@ impl Menu<'_> {
                 ui.menu_button(group.name(), |ui| {
                     self.group(ui, group, commands);
                     if group == Group::View {
-                        ui.separator();
-                        self.group(ui, Group::Bvh, commands);
-                        ui.separator();
-                        ui.horizontal(|ui| {
-                            ui.label("Theme");
-                            egui::widgets::global_theme_preference_buttons(ui);
-                        });
+                        self.more_view(ui, commands);
                     }
                 });
             }
@@ -53,6 +47,23 @@ impl Menu<'_> {
                 );
             });
         });
+    }
+
+    fn more_view(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
+        ui.separator();
+        self.group(ui, Group::Bvh, commands);
+        ui.separator();
+        ui.label("Theme");
+        let mut theme = ui.ctx().options(|options| options.theme_preference);
+        for (choice, text) in [
+            (ThemePreference::System, "As the system"),
+            (ThemePreference::Dark, "Dark"),
+            (ThemePreference::Light, "Light"),
+        ] {
+            if ui.radio_value(&mut theme, choice, text).changed() {
+                ui.ctx().set_theme(choice);
+            }
+        }
     }
 
     fn file(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
