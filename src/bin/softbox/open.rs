@@ -43,7 +43,7 @@ pub(crate) fn open_path(path: &Path) -> Result<Loaded, Failure> {
 }
 
 /// Reads a picture of the surroundings.
-fn environment_map(path: &PathBuf) -> anyhow::Result<EnvironmentMap> {
+pub(crate) fn environment_map(path: &PathBuf) -> anyhow::Result<EnvironmentMap> {
     let picture = read_environment(path)?;
     Ok(EnvironmentMap {
         path: path.clone(),

@@ -2,7 +2,10 @@
 
 use std::sync::Arc;
 
-use eframe::egui::{CentralPanel, Context, Frame as UiFrame, Panel, ScrollArea, Ui};
+use eframe::egui::style::ScrollStyle;
+use eframe::egui::{
+    CentralPanel, Context, Frame as UiFrame, Panel, ScrollArea, Ui, ViewportCommand,
+};
 use softbox::scene::Scene;
 
 use super::bvh_view::BvhView;
@@ -13,7 +16,7 @@ use super::event_log::EventLog;
 use super::files::Files;
 use super::inspector::{PickInfo, Picker, PixelValues, pixel_values};
 use super::keys;
-use super::navigation::{Click, Navigation};
+use super::navigation::Navigation;
 use super::options::ViewerOptions;
 use super::panels::{self, menu::Menu, status_bar::StatusBar};
 use super::preferences::Preferences;
@@ -42,6 +45,18 @@ pub(super) struct ViewState {
     pub(super) bvh: BvhView,
     pixel: Option<PixelValues>,
     surface: Option<PickInfo>,
+    title: String,
+}
+
+impl ViewState {
+    /// Names the scene in the window's title.
+    fn follow_title(&mut self, ctx: &Context, name: &str) {
+        if self.title != name {
+            name.clone_into(&mut self.title);
+            let title = format!("{name} - softbox");
+            ctx.send_viewport_cmd(ViewportCommand::Title(title));
+        }
+    }
 }
 
 impl App {
@@ -58,6 +73,8 @@ impl App {
         let ctx = &cc.egui_ctx;
         // Ctrl and wheel, plus and minus belong to the picture.
         ctx.options_mut(|o| o.zoom_with_keyboard = false);
+        // The scroll bar has its own place beside the widgets.
+        ctx.all_styles_mut(|style| style.spacing.scroll = ScrollStyle::solid());
         let mut preferences = Preferences::load(cc.storage);
         preferences.keys = options.keys.unwrap_or(preferences.keys);
         let settings = options
@@ -75,7 +92,7 @@ impl App {
             document,
             engine: Engine::start(move || wake.request_repaint())?,
             view: ViewState::default(),
-            files: Files::new(ctx),
+            files: Files::new(ctx, options.environment),
             windows: Windows::default(),
             preferences,
             log: EventLog::new(options.logs_events, options.exit_after),
@@ -124,11 +141,12 @@ impl App {
             size: self.document.image_size(),
             has_added_light: self.document.scene.environment.is_added,
             badge: settings.course_compatible.then_some("course-compatible"),
+            report: self.files.report.as_ref(),
         }
         .show(ui, commands);
     }
 
-    fn picture(&mut self, ui: &mut Ui) {
+    fn picture(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
         let document = &mut self.document;
         if document.resolution == Resolution::FollowWindow {
             let pixels = ui.available_size() * ui.ctx().pixels_per_point();
@@ -145,12 +163,10 @@ impl App {
         }
         if view.viewport.allows_navigation() {
             let click = view.navigation.update(ui, &shown, document, &picker);
-            if let Some(Click::Focus(point)) = click
-                && let Some(hit) = picker.pick(&document.camera, &shown.letterbox, point)
-            {
-                document.camera.focal_distance = hit.depth;
-                let text = format!("Focus at {:.4}", hit.depth);
-                self.windows.messages.tell(text, ui.ctx().time());
+            let click = click.or_else(|| view.navigation.menu(&shown, commands));
+            let news = click.and_then(|c| Navigation::carry_out(c, &shown, document, &picker));
+            if let Some(news) = news {
+                self.windows.messages.tell(news, ui.ctx().time());
             }
         }
         let painter = ui.painter_at(shown.response.rect);
@@ -181,6 +197,7 @@ impl eframe::App for App {
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
         self.take_file_events(&ctx);
+        self.view.follow_title(&ctx, self.document.name());
         if let Some(frame) = self.engine.take_frame() {
             self.view.viewport.upload(&ctx, frame);
         }
@@ -191,8 +208,8 @@ impl eframe::App for App {
             Panel::top("menu").show(ui, |ui| self.menu_bar(ui, &bindings, &mut commands));
             Panel::bottom("status").show(ui, |ui| self.status_bar(ui, &mut commands));
             Panel::right("settings")
-                .default_size(330.0)
-                .size_range(280.0..=560.0)
+                .default_size(356.0)
+                .size_range(300.0..=560.0)
                 .show(ui, |ui| {
                     ScrollArea::vertical()
                         .auto_shrink(false)
@@ -201,7 +218,7 @@ impl eframe::App for App {
         }
         CentralPanel::default()
             .frame(UiFrame::NONE)
-            .show(ui, |ui| self.picture(ui));
+            .show(ui, |ui| self.picture(ui, &mut commands));
         self.small_windows(&ctx, &bindings, &mut commands);
         for command in commands {
             self.execute(&ctx, command);

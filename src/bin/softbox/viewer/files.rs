@@ -40,12 +40,12 @@ pub(super) struct Files {
 }
 
 impl Files {
-    /// Nothing open.
-    pub(super) fn new(ctx: &Context) -> Self {
+    /// Nothing open; `environment` takes the place of every scene's own.
+    pub(super) fn new(ctx: &Context, environment: Option<PathBuf>) -> Self {
         let (sender, inbox) = channel();
         Self {
             ctx: ctx.clone(),
-            loader: Loader::default(),
+            loader: Loader::new(environment),
             watch: None,
             sender,
             inbox,

@@ -11,7 +11,7 @@ use softbox::scene::PreparedScene;
 use softbox::session::Snapshot;
 
 use super::letterbox::Letterbox;
-use super::shown::display_of;
+use crate::shown::display_of;
 
 /// A surface under a point of the screen.
 #[derive(Clone, Debug, PartialEq)]

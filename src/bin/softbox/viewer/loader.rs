@@ -6,7 +6,9 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
-use softbox::io::{ImportError, LoadProgress, Loaded, load_scene};
+use softbox::io::{LoadProgress, Loaded, builtin_scene, load_scene};
+
+use crate::open::environment_map;
 
 /// What the loader reports to the window.
 #[derive(Debug)]
@@ -25,7 +27,7 @@ pub(super) enum LoadEvent {
 #[derive(Debug)]
 enum Message {
     Progress(LoadProgress),
-    Done(Result<Box<Loaded>, ImportError>),
+    Done(Result<Box<Loaded>, String>),
 }
 
 /// A file being read.
@@ -39,9 +41,10 @@ struct Running {
 }
 
 /// Reads one file at a time; a new request takes the place of the old one.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Loader {
     running: Option<Running>,
+    environment: Option<PathBuf>,
 }
 
 /// What the progress line shows.
@@ -56,6 +59,15 @@ pub(super) struct LoadStatus {
 }
 
 impl Loader {
+    /// A loader; `environment`, a picture of the surroundings, takes the place of every scene's
+    /// own.
+    pub(super) fn new(environment: Option<PathBuf>) -> Self {
+        Self {
+            running: None,
+            environment,
+        }
+    }
+
     /// Starts reading `path`; `wake` is called when there is something to poll.
     pub(super) fn start(
         &mut self,
@@ -67,6 +79,7 @@ impl Loader {
         let (sender, messages) = channel();
         let is_cancelled = Arc::new(AtomicBool::new(false));
         let (file, stop) = (path.to_owned(), Arc::clone(&is_cancelled));
+        let environment = self.environment.clone();
         std::thread::Builder::new()
             .name("loader".to_owned())
             .spawn(move || {
@@ -79,7 +92,7 @@ impl Loader {
                     wake();
                     ControlFlow::Continue(())
                 };
-                let result = load_scene(&file, &mut report).map(Box::new);
+                let result = read(&file, environment.as_ref(), &mut report).map(Box::new);
                 drop(sender.send(Message::Done(result)));
                 wake();
             })
@@ -116,7 +129,7 @@ impl Loader {
         let result = loop {
             match running.messages.try_recv() {
                 Ok(Message::Progress(progress)) => running.progress = Some(progress),
-                Ok(Message::Done(result)) => break result.map_err(|error| error.to_string()),
+                Ok(Message::Done(result)) => break result,
                 Err(TryRecvError::Empty) => return None,
                 Err(TryRecvError::Disconnected) => {
                     break Err(format!(
@@ -139,6 +152,25 @@ impl Drop for Loader {
     fn drop(&mut self) {
         self.cancel();
     }
+}
+
+/// Reads a file, or gives the built-in scene of that name where there is no such file.
+fn read(
+    path: &Path,
+    environment: Option<&PathBuf>,
+    report: &mut dyn FnMut(LoadProgress) -> ControlFlow<()>,
+) -> Result<Loaded, String> {
+    let name = path.to_str().filter(|_| !path.exists());
+    let mut loaded = match name.and_then(builtin_scene) {
+        Some(loaded) => loaded,
+        None => load_scene(path, report).map_err(|error| error.to_string())?,
+    };
+    if let Some(environment) = environment {
+        let map = environment_map(environment).map_err(|error| error.to_string())?;
+        loaded.scene.environment.map = Some(map);
+    }
+    loaded.scene.light_if_dark();
+    Ok(loaded)
 }
 
 /// The last part of a path, for people.

@@ -4,6 +4,7 @@ use eframe::egui::{self, Key, PointerButton, Pos2, Ui};
 use glam::{DVec2, DVec3};
 use softbox::camera::Camera;
 
+use super::command::Command;
 use super::document::Document;
 use super::inspector::Picker;
 use super::orbit::{self, Gesture};
@@ -19,12 +20,15 @@ const FLIGHT_SPEED: f64 = 0.35;
 pub(super) enum Click {
     /// Focus on the surface under this point of the screen.
     Focus(Pos2),
+    /// Look at the surface under this point and turn about it.
+    Pivot(Pos2),
 }
 
 /// The state of a movement.
 #[derive(Debug, Default)]
 pub(super) struct Navigation {
     is_looking: bool,
+    menu_at: Option<Pos2>,
 }
 
 impl Navigation {
@@ -43,17 +47,15 @@ impl Navigation {
     ) -> Option<Click> {
         let response = &shown.response;
         let mut click = None;
-        for gesture in self.drags(ui, shown) {
+        for gesture in self.drags(ui, shown, document.camera.target) {
             move_camera(document, gesture);
         }
         if let Some(pointer) = response.hover_pos() {
             if let Some(gesture) = wheel(ui, shown, document, picker, pointer) {
                 move_camera(document, gesture);
             }
-            if response.double_clicked_by(PointerButton::Primary)
-                && let Some(hit) = picker.pick(&document.camera, &shown.letterbox, pointer)
-            {
-                move_camera(document, Gesture::Pivot(hit.point));
+            if response.double_clicked_by(PointerButton::Primary) {
+                click = Some(Click::Pivot(pointer));
             }
             if response.clicked_by(PointerButton::Secondary) && ui.input(|i| i.modifiers.command) {
                 click = Some(Click::Focus(pointer));
@@ -65,7 +67,62 @@ impl Navigation {
         click
     }
 
-    fn drags(&mut self, ui: &Ui, shown: &Shown) -> Vec<Gesture> {
+    /// The menu of a right click.
+    pub(super) fn menu(&mut self, shown: &Shown, commands: &mut Vec<Command>) -> Option<Click> {
+        let response = &shown.response;
+        let is_focusing = response.ctx.input(|i| i.modifiers.command);
+        if is_focusing {
+            return None;
+        }
+        if response.secondary_clicked() {
+            self.menu_at = response.interact_pointer_pos();
+        }
+        let at = self.menu_at?;
+        let mut click = None;
+        response.context_menu(|ui| {
+            if ui.button("Focus here").clicked() {
+                click = Some(Click::Focus(at));
+            }
+            if ui.button("Orbit about this point").clicked() {
+                click = Some(Click::Pivot(at));
+            }
+            ui.separator();
+            for (text, command) in [
+                ("Reset camera", Command::ResetCamera),
+                ("Frame the scene", Command::FrameScene),
+                ("Save picture", Command::SaveSnapshot),
+                ("Copy picture", Command::CopyImage),
+            ] {
+                if ui.button(text).clicked() {
+                    commands.push(command);
+                }
+            }
+        });
+        click
+    }
+
+    /// Carries out a click; returns the news for the user.
+    pub(super) fn carry_out(
+        click: Click,
+        shown: &Shown,
+        document: &mut Document,
+        picker: &Picker,
+    ) -> Option<String> {
+        let (Click::Focus(at) | Click::Pivot(at)) = click;
+        let hit = picker.pick(&document.camera, &shown.letterbox, at)?;
+        match click {
+            Click::Focus(_) => {
+                document.camera.focal_distance = hit.depth;
+                Some(format!("Focus at {:.4}", hit.depth))
+            }
+            Click::Pivot(_) => {
+                move_camera(document, Gesture::Pivot(hit.point));
+                None
+            }
+        }
+    }
+
+    fn drags(&mut self, ui: &Ui, shown: &Shown, target: DVec3) -> Vec<Gesture> {
         let response = &shown.response;
         let height = f64::from(shown.letterbox.rect.height().max(1.0));
         let moved = response.drag_delta();
@@ -84,6 +141,10 @@ impl Navigation {
             vec![Gesture::Pan(delta)]
         } else if dragged(PointerButton::Primary) {
             vec![Gesture::Orbit(delta)]
+        } else if dragged(PointerButton::Secondary) && modifiers.alt {
+            let factor = (delta.y - delta.x).exp();
+            let towards = target;
+            vec![Gesture::Dolly { towards, factor }]
         } else if dragged(PointerButton::Secondary) && self.is_looking {
             vec![Gesture::Look(delta)]
         } else {

@@ -33,6 +33,8 @@ pub(super) struct ViewerOptions {
     pub(super) display: Option<DisplaySettings>,
     /// What was said about the camera.
     pub(super) camera: CameraChoice,
+    /// A picture of the surroundings in place of the scenes' own.
+    pub(super) environment: Option<PathBuf>,
     /// The preferred drawing interface.
     pub(super) backend: Backend,
     /// The meaning of Space.
@@ -54,6 +56,7 @@ impl ViewerOptions {
             has_fixed_size: (settings.width, settings.height) != (plain.width, plain.height),
             display: (job.display != DisplaySettings::default()).then_some(job.display),
             camera: job.camera.clone(),
+            environment: job.environment.clone(),
             backend: match window.renderer.as_deref() {
                 Some("wgpu") => Backend::Wgpu,
                 _ => Backend::Glow,

@@ -9,7 +9,8 @@ use eframe::egui::ColorImage;
 use softbox::display::DisplaySettings;
 use softbox::session::{RenderSession, Snapshot};
 
-use super::shown::{Legend, shown_image};
+use super::shown::shown_image;
+use crate::shown::Legend;
 
 /// An image ready for the screen.
 #[derive(Clone, Debug)]

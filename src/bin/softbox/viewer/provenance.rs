@@ -26,8 +26,12 @@ pub(super) fn command_line(
         stop.samples_per_pixel = Some(samples.max(1));
     }
     let (half_width, _) = camera.half_extent(settings.width, settings.height);
+    let path = document.scene.path.clone();
+    let environment = &document.scene.environment.map;
     let job = Job {
-        scene: document.scene.path.clone(),
+        // A built-in scene is opened by its name.
+        scene: Some(path.unwrap_or_else(|| document.name().into())),
+        environment: environment.as_ref().map(|map| map.path.clone()),
         outputs: vec![format!("{}.png", document.name()).into()],
         settings,
         camera: CameraChoice {
@@ -47,32 +51,10 @@ pub(super) fn command_line(
 
 /// The words that go into the files of a picture.
 pub(super) fn metadata(document: &Document, snapshot: &Snapshot) -> Metadata {
-    let mut metadata = Metadata::default();
-    metadata.set("version", env!("CARGO_PKG_VERSION"));
-    metadata.set("scene", document.name());
-    metadata.set("seed", snapshot.settings.seed.to_string());
-    metadata.set("samples-mean", snapshot.samples_mean.to_string());
-    metadata.set("samples-max", snapshot.samples_max.to_string());
-    let command = command_line(
-        document,
-        &snapshot.camera,
-        snapshot.settings.clone(),
-        snapshot.samples_max,
-    );
-    metadata.set(Metadata::COMMAND, command);
-    metadata.set("seconds", format!("{:.3}", snapshot.seconds));
-    metadata.set("view", snapshot.view.name());
-    if let Some(error) = snapshot.relative_error {
-        metadata.set("relative-error", error.to_string());
-    }
-    for (key, text) in [
-        ("settings", serde_json::to_string(&snapshot.settings)),
-        ("camera", serde_json::to_string(&snapshot.camera)),
-        ("display", serde_json::to_string(&document.display)),
-    ] {
-        metadata.set(key, text.expect("plain data always has a JSON form"));
-    }
-    metadata
+    let settings = snapshot.settings.clone();
+    let command = command_line(document, &snapshot.camera, settings, snapshot.samples_max);
+    let scene = (document.name(), document.scene.path.as_deref());
+    crate::provenance::metadata(snapshot, &document.display, scene, &command)
 }
 
 /// Writes the camera beside the scene in the course's format and returns the file's path. Never

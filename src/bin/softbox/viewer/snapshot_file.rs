@@ -3,13 +3,12 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use softbox::display::{DisplaySettings, tone_map};
+use softbox::display::DisplaySettings;
 use softbox::io::picture::{Metadata, append_extension, numbered_path, write_exr, write_png};
 use softbox::session::Snapshot;
 use softbox::settings::View;
 
-use super::shown::display_of;
-use super::shown::shown_image;
+use crate::shown::shown_bytes;
 
 /// A picture to write.
 #[derive(Clone, Debug)]
@@ -39,7 +38,7 @@ pub(super) fn write_snapshot(request: &SnapshotRequest) -> Result<PathBuf, Strin
         &append_extension(&path, "png"),
         width,
         height,
-        &displayed(snapshot, &request.display),
+        &shown_bytes(snapshot, &request.display),
         &request.metadata,
     )
     .and_then(|()| {
@@ -53,16 +52,6 @@ pub(super) fn write_snapshot(request: &SnapshotRequest) -> Result<PathBuf, Strin
     })
     .map_err(|error| error.to_string())?;
     Ok(path)
-}
-
-/// The displayed bytes, exact where the window uses a table.
-fn displayed(snapshot: &Snapshot, display: &DisplaySettings) -> Vec<[u8; 3]> {
-    let (image, legend) = shown_image(snapshot, display);
-    if legend.is_some() {
-        let bytes = image.pixels.iter().map(|c| [c.r(), c.g(), c.b()]);
-        return bytes.collect();
-    }
-    tone_map(&snapshot.pixels, &display_of(snapshot.view, display))
 }
 
 fn stem(request: &SnapshotRequest) -> String {

@@ -6,20 +6,18 @@ use anyhow::anyhow;
 use eframe::egui::ViewportBuilder;
 use eframe::{NativeOptions, Renderer};
 use softbox::io::camera_file::read_camera_file;
-use softbox::scene::procedural;
+use softbox::scene::Scene;
 
 use super::app::App;
 use super::options::{Backend, ViewerOptions};
 use crate::args::WindowArgs;
 use crate::exit::{Failure, Status};
 use crate::job::Job;
+use crate::open::{open, open_path};
 use crate::render::check_readable;
 
 /// Identifies the window to the desktop and names the folder of the stored preferences.
 const APP_ID: &str = "softbox";
-
-/// The scene that is shown when no file is named.
-const BUILT_IN: &str = "knot-70k";
 
 /// Opens the window on `job` until it is closed.
 ///
@@ -27,15 +25,10 @@ const BUILT_IN: &str = "knot-70k";
 /// When the scene or the camera file cannot be opened, or when no drawing interface works; the
 /// sentence then names the way without a window.
 pub(crate) fn run(job: &Job, window: &WindowArgs) -> Result<(), Failure> {
-    if let Some(scene) = &job.scene {
-        check_readable(scene)?;
-    }
     if let Some(file) = &job.camera.file {
         read_camera_file(file).map_err(Status::Scene.because())?;
     }
-    // While a file is being read there is nothing to show.
-    let built_in = || procedural(BUILT_IN).unwrap_or_default();
-    let scene = Arc::new(job.scene.as_ref().map_or_else(built_in, |_| <_>::default()));
+    let scene = Arc::new(first_scene(job)?);
     let options = &ViewerOptions::new(job, window);
     let mut failures = Vec::new();
     for renderer in renderers(options.backend) {
@@ -55,6 +48,16 @@ pub(crate) fn run(job: &Job, window: &WindowArgs) -> Result<(), Failure> {
         "The window cannot be opened ({}). Render without one: softbox render SCENE -o OUT.png",
         failures.join("; ")
     )))
+}
+
+/// What is shown until the window has read the file: nothing, or the built-in scene for good.
+fn first_scene(job: &Job) -> Result<Scene, Failure> {
+    match &job.scene {
+        None => open(job).map(|loaded| loaded.scene),
+        Some(path) if path.exists() => check_readable(path).map(|()| Scene::default()),
+        // A built-in scene, or the error that there is no such file.
+        Some(path) => open_path(path).map(|_| Scene::default()),
+    }
 }
 
 /// The compiled renderers, the preferred one first.

@@ -12,7 +12,7 @@ pub(in crate::viewer) fn show(ui: &mut Ui, view: &mut BvhView, facts: Option<&No
         .show(ui, |ui| {
             egui::Grid::new("BVH view")
                 .num_columns(2)
-                .min_col_width(96.0)
+                .min_col_width(super::LABELS)
                 .show(ui, |ui| {
                     row(
                         ui,

@@ -5,8 +5,9 @@ use softbox::display::{DisplaySettings, ToneCurve};
 use softbox::settings::View;
 
 use super::{choice, row, section};
+use crate::shown::Legend;
 use crate::viewer::keys::view_title;
-use crate::viewer::shown::Legend;
+use crate::viewer::shown::legend_color;
 
 /// View, exposure and tone curve.
 pub(in crate::viewer) fn show(
@@ -52,7 +53,7 @@ fn show_legend(ui: &mut Ui, legend: &Legend) {
         );
         let t = (i as f32 + 0.5) / STEPS as f32;
         ui.painter()
-            .rect_filled(part, egui::CornerRadius::ZERO, legend.color(t));
+            .rect_filled(part, egui::CornerRadius::ZERO, legend_color(legend, t));
     }
     ui.horizontal(|ui| {
         ui.set_width(size.x);

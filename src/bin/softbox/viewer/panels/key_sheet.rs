@@ -5,12 +5,13 @@ use eframe::egui::{self, Context, Grid, Ui, Window};
 use crate::viewer::command::{Binding, Group};
 use crate::viewer::keys::chord_text;
 
-const MOUSE: [(&str, &str); 9] = [
+const MOUSE: [(&str, &str); 10] = [
     ("Left drag", "orbit"),
     ("Middle drag, Shift + left drag", "pan"),
     ("Wheel, pinch", "move towards the point under the pointer"),
     ("Right drag", "look around"),
     ("Right button + W A S D Q E", "fly (Shift: faster)"),
+    ("Alt + right drag", "move towards the target"),
     ("Double click", "look at this point and orbit about it"),
     ("Ctrl + right click", "focus on this point"),
     ("C, then left drag", "render only this region"),

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use eframe::egui::{Button, MenuBar, ThemePreference, Ui};
+use softbox::io::builtin_names;
 
 use crate::viewer::command::{Binding, Command, Group, KeyPreset};
 use crate::viewer::keys::chord_text;
@@ -78,6 +79,13 @@ impl Menu<'_> {
                     }
                 }
             });
+        });
+        ui.menu_button("Open built-in", |ui| {
+            for name in builtin_names() {
+                if ui.button(name).clicked() {
+                    commands.push(Command::OpenPath(name.into()));
+                }
+            }
         });
         self.item(ui, &Command::Reload, commands);
         ui.checkbox(self.watches_files, "Reload when the file changes");

@@ -16,6 +16,9 @@ pub(super) mod stop;
 
 use eframe::egui::{self, ComboBox, Response, Ui, Widget};
 
+/// Width of the column of labels, the same in all sections.
+pub(super) const LABELS: f32 = 112.0;
+
 /// A section that can be folded.
 pub(super) fn section(ui: &mut Ui, title: &str, is_open: bool, content: impl FnOnce(&mut Ui)) {
     egui::CollapsingHeader::new(title)
@@ -24,7 +27,7 @@ pub(super) fn section(ui: &mut Ui, title: &str, is_open: bool, content: impl FnO
             egui::Grid::new(title)
                 .num_columns(2)
                 .spacing([8.0, 5.0])
-                .min_col_width(96.0)
+                .min_col_width(LABELS)
                 .show(ui, content);
         });
 }

@@ -15,7 +15,7 @@ pub(in crate::viewer) fn show(
         .show(ui, |ui| {
             Grid::new("pixel")
                 .num_columns(2)
-                .min_col_width(96.0)
+                .min_col_width(super::LABELS)
                 .show(ui, |ui| {
                     for (name, text) in pixel_lines(values)
                         .into_iter()

@@ -20,7 +20,7 @@ pub(in crate::viewer) fn show(ui: &mut Ui, status: &SessionStatus, bvh: Option<&
 fn facts(ui: &mut Ui, id: &str, lines: &[(&str, String)]) {
     Grid::new(id)
         .num_columns(2)
-        .min_col_width(96.0)
+        .min_col_width(super::LABELS)
         .show(ui, |ui| {
             for (name, value) in lines {
                 ui.label(*name);

@@ -1,6 +1,7 @@
 //! The line at the bottom: what is going on, how far it is, how long it takes.
 
 use eframe::egui::{self, ProgressBar, Ui};
+use softbox::io::{ImportReport, Severity};
 use softbox::session::{SessionState, SessionStatus, StopReason};
 
 use super::statistics::count;
@@ -20,6 +21,8 @@ pub(in crate::viewer) struct StatusBar<'a> {
     pub(in crate::viewer) has_added_light: bool,
     /// True when the light of only some of the bounces is kept, or the like.
     pub(in crate::viewer) badge: Option<&'static str>,
+    /// The report of the open file.
+    pub(in crate::viewer) report: Option<&'a ImportReport>,
 }
 
 impl StatusBar<'_> {
@@ -41,6 +44,9 @@ impl StatusBar<'_> {
                 ui.monospace(format!("{}×{}", self.size[0], self.size[1]));
                 if self.has_added_light {
                     show_added_light(ui, commands);
+                }
+                if let Some(report) = self.report {
+                    show_report_badge(ui, report, commands);
                 }
                 if let Some(badge) = self.badge {
                     ui.colored_label(ui.visuals().warn_fg_color, badge);
@@ -113,6 +119,21 @@ fn show_loading(ui: &mut Ui, loading: &LoadStatus, commands: &mut Vec<Command>) 
             .text(loading.stage),
     );
     ui.label(format!("Opening {}", loading.file));
+}
+
+/// A button to the report when something in the file was wrong or lost.
+fn show_report_badge(ui: &mut Ui, report: &ImportReport, commands: &mut Vec<Command>) {
+    let lost = report.notes.iter();
+    let lost = lost
+        .filter(|note| note.severity >= Severity::Dropped)
+        .count();
+    if lost > 0 {
+        let text = format!("{lost} in the report");
+        let help = "Parts of the file were wrong or have no effect on the picture.";
+        if ui.small_button(text).on_hover_text(help).clicked() {
+            commands.push(Command::ToggleReport);
+        }
+    }
 }
 
 fn show_added_light(ui: &mut Ui, commands: &mut Vec<Command>) {
