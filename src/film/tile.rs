@@ -12,6 +12,11 @@ pub struct Tile {
 }
 
 impl Tile {
+    /// Forgets all samples.
+    pub fn clear(&mut self) {
+        self.pixels.fill(PixelStats::default());
+    }
+
     /// Where the tile lies in the image.
     pub fn area(&self) -> Region {
         self.area

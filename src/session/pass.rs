@@ -2,8 +2,25 @@ use rayon::prelude::*;
 
 use super::workers::{WorkerArrays, Workers};
 use crate::film::{Film, Tile};
-use crate::integrator::{BATCH_SIZE, PathCounts, PathId, PathTracer};
+use crate::integrator::{PathCounts, PathId, PathTracer};
 use crate::settings::IntegratorKind;
+
+/// Forgets all samples of `film`; false when `stop` said so, asked before each tile.
+pub(super) fn clear_pass(
+    workers: &Workers,
+    film: &mut Film,
+    stop: &(dyn Fn() -> bool + Sync),
+) -> bool {
+    workers.install(|| {
+        film.tiles_mut().par_iter_mut().all(|tile| {
+            if stop() {
+                return false;
+            }
+            tile.clear();
+            true
+        })
+    })
+}
 
 /// Takes samples until every open pixel of `film` has `target` of them or `stop` says so; it is
 /// asked before each batch of paths. The film is whole at any time: what a stopped pass left out,
@@ -23,7 +40,7 @@ pub(super) fn render_pass(
             .map(|tile| {
                 workers.with_arrays(|arrays| {
                     let mut counts = PathCounts::default();
-                    while next_batch(tile, target, &mut arrays.ids) {
+                    while next_batch(tile, target, workers.batch_size(), &mut arrays.ids) {
                         if stop() {
                             return (counts, false);
                         }
@@ -43,25 +60,30 @@ pub(super) fn render_pass(
     })
 }
 
-/// Collects the samples that `tile` still lacks, in rounds of one sample for each pixel, up to a
-/// batch; false when there are none.
-fn next_batch(tile: &Tile, target: u32, ids: &mut Vec<PathId>) -> bool {
+/// Collects up to `size` of the samples that `tile` still lacks, lowest numbers first; false when
+/// there are none.
+fn next_batch(tile: &Tile, target: u32, size: usize, ids: &mut Vec<PathId>) -> bool {
     ids.clear();
-    for round in 0.. {
-        let before = ids.len();
-        for (index, pixel) in tile.pixels().iter().enumerate() {
-            let sample = pixel.count().saturating_add(round);
-            if !pixel.is_closed() && sample < target {
-                let (x, y) = tile.position(index);
-                ids.push(PathId {
-                    pixel: [x, y],
-                    sample,
-                });
+    let open = || {
+        tile.pixels()
+            .iter()
+            .enumerate()
+            .filter(|(_, pixel)| !pixel.is_closed())
+    };
+    let first = open()
+        .map(|(_, pixel)| pixel.count())
+        .min()
+        .unwrap_or(target);
+    for sample in first..target {
+        for (index, _) in open().filter(|(_, pixel)| pixel.count() <= sample) {
+            let (x, y) = tile.position(index);
+            ids.push(PathId {
+                pixel: [x, y],
+                sample,
+            });
+            if ids.len() == size {
+                return true;
             }
-        }
-        let added = ids.len() - before;
-        if added == 0 || ids.len() + added > BATCH_SIZE {
-            break;
         }
     }
     !ids.is_empty()

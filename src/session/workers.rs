@@ -10,6 +10,10 @@ use crate::settings::IntegratorKind;
 /// rests, and never keep it from answering.
 const BACKGROUND_NICE: i32 = 10;
 
+/// Paths in a batch of a window's session: small enough that a new camera waits for no more than
+/// some milliseconds.
+const BACKGROUND_BATCH: usize = 512;
+
 /// A pool of named threads, each with the arrays of its integrator.
 #[derive(Debug)]
 pub(super) struct Workers {
@@ -45,6 +49,15 @@ impl Workers {
             pool,
             arrays,
             is_background,
+        }
+    }
+
+    /// Paths in one batch, after which workers look up.
+    pub(super) fn batch_size(&self) -> usize {
+        if self.is_background {
+            BACKGROUND_BATCH
+        } else {
+            BATCH_SIZE
         }
     }
 

@@ -15,6 +15,8 @@ pub struct Estimate {
     pub n: f64,
     pub sum: [f64; 3],
     pub sum_of_squares: [f64; 3],
+    /// The largest sample.
+    pub largest: f64,
 }
 
 impl Estimate {
@@ -23,11 +25,13 @@ impl Estimate {
         for (c, &x) in x.iter().enumerate() {
             self.sum[c] += f64::from(x);
             self.sum_of_squares[c] += f64::from(x) * f64::from(x);
+            self.largest = self.largest.max(f64::from(x));
         }
     }
 
     pub fn merge(mut self, other: Self) -> Self {
         self.n += other.n;
+        self.largest = self.largest.max(other.largest);
         for c in 0..3 {
             self.sum[c] += other.sum[c];
             self.sum_of_squares[c] += other.sum_of_squares[c];

@@ -11,7 +11,7 @@ use crate::film::{Film, FilmSummary};
 use crate::integrator::{PathCounts, PathSettings, PathTracer};
 use crate::scene::PreparedScene;
 use crate::session::first_hit_pass::first_hit_pass;
-use crate::session::pass::render_pass;
+use crate::session::pass::{clear_pass, render_pass};
 
 /// One picture in the making: a job, its runtime scene, and the film so far.
 #[derive(Debug)]
@@ -20,6 +20,8 @@ pub(super) struct Picture {
     pub(super) generation: u64,
     camera: RayCamera,
     film: Film,
+    /// False while `film` still holds the samples of the picture before.
+    film_is_clear: bool,
     summary: FilmSummary,
     backdrop: Option<Preview>,
     seconds: f64,
@@ -35,22 +37,28 @@ pub(super) struct Picture {
 }
 
 impl Picture {
-    pub(super) fn new(job: RenderJob, generation: u64, scene: &PreparedScene) -> Self {
+    /// A picture without samples. `recycled` is the film of the picture before: new memory for a
+    /// large film takes longer than the first look.
+    pub(super) fn new(
+        job: RenderJob,
+        generation: u64,
+        scene: &PreparedScene,
+        recycled: Option<Film>,
+    ) -> Self {
         let settings = &job.settings;
-        let camera = RayCamera::new(
-            &job.camera,
-            settings.width,
-            settings.height,
-            scene.normalization(),
-        );
-        let film = Film::new(settings.active_region());
-        let summary = film.summary();
+        let (width, height) = (settings.width, settings.height);
+        let camera = RayCamera::new(&job.camera, width, height, scene.normalization());
+        let region = settings.active_region();
+        let recycled = recycled.filter(|film| film.region() == region);
+        let film_is_clear = recycled.is_none();
+        let film = recycled.unwrap_or_else(|| Film::new(region));
         Self {
             job,
             generation,
             camera,
             film,
-            summary,
+            film_is_clear,
+            summary: FilmSummary::default(),
             backdrop: None,
             seconds: 0.0,
             counts: PathCounts::default(),
@@ -60,6 +68,11 @@ impl Picture {
             all_closed: false,
             first_hit_is_done: false,
         }
+    }
+
+    /// The film, for the next picture.
+    pub(super) fn into_film(self) -> Film {
+        self.film
     }
 
     /// Takes another view, stop rule or number of threads; the film stays.
@@ -151,6 +164,10 @@ impl Picture {
         stop: &(dyn Fn() -> bool + Sync),
     ) {
         let started = Instant::now();
+        self.film_is_clear = self.film_is_clear || clear_pass(workers, &mut self.film, stop);
+        if !self.film_is_clear {
+            return;
+        }
         let settings = &self.job.settings;
         let tracer = PathTracer::new(scene, &self.camera, PathSettings::from(settings));
         let target = next_target(settings, self.done, self.last_pass);
@@ -199,6 +216,11 @@ impl Picture {
             self.caption()
                 .plain((size[0] as usize, size[1] as usize), pixels, false),
         )
+    }
+
+    /// True when there is something of this picture to show.
+    pub(super) fn has_samples(&self) -> bool {
+        self.film_is_clear && self.counts.camera_rays > 0
     }
 
     /// The picture so far.

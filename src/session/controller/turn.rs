@@ -116,7 +116,7 @@ impl<'a> Turn<'a> {
         match &mut self.picture {
             Some(picture) if change == Change::Continue => {
                 picture.go_on_with(job);
-                self.has_news = true;
+                self.has_news = picture.has_samples();
                 self.published -= PUBLISH_EVERY[0];
                 if picture.job.settings.view.is_first_hit() && picture.stop_reason().is_none() {
                     self.show_preview();
@@ -131,7 +131,8 @@ impl<'a> Turn<'a> {
     fn start(&mut self, job: RenderJob) {
         let Some(scene) = &self.scene else { return };
         self.generation += 1;
-        self.picture = Some(Picture::new(job, self.generation, scene));
+        let recycled = self.picture.take().map(Picture::into_film);
+        self.picture = Some(Picture::new(job, self.generation, scene, recycled));
         self.has_news = false;
         self.shared.update_status(|status| {
             status.eta_seconds = None;
@@ -208,7 +209,7 @@ impl<'a> Turn<'a> {
             is_interrupted() || Instant::now() >= due
         });
         shared.update_status(|status| picture.describe(status));
-        self.has_news = true;
+        self.has_news = picture.has_samples();
         if Instant::now() >= due && !is_interrupted() {
             self.publish_news();
         }
