@@ -219,7 +219,7 @@ impl eframe::App for App {
             Panel::top("menu").show(ui, |ui| self.menu_bar(ui, &bindings, &mut commands));
             Panel::bottom("status").show(ui, |ui| self.status_bar(ui, &mut commands));
             Panel::right("settings")
-                .default_size(356.0)
+                .default_size(380.0)
                 .size_range(300.0..=560.0)
                 .show(ui, |ui| {
                     ScrollArea::vertical()

@@ -63,6 +63,7 @@ pub(in crate::viewer) fn show(ui: &mut Ui, document: &mut Document, commands: &m
         }
         ui.label("");
         ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 3.0;
             for (text, command) in [
                 ("Reset", Command::ResetCamera),
                 ("Frame", Command::FrameScene),

@@ -91,7 +91,7 @@ impl StatusBar<'_> {
             .map_or_else(String::new, |n| format!("/{n}"));
         let error = status
             .relative_error
-            .map_or_else(|| "     ".to_owned(), |e| format!("{:>4.1}%", e * 100.0));
+            .map_or_else(String::new, |e| format!("error {:>4.1}%", e * 100.0));
         let eta = status
             .eta_seconds
             .map_or_else(String::new, |s| format!("{} left", duration(s)));
@@ -101,7 +101,7 @@ impl StatusBar<'_> {
             format!("{:.1}", status.samples_mean)
         };
         format!(
-            "{:>9} spp  {:>6}  error {error}  {:>8}/s  {eta}",
+            "{:>9} spp  {:>6}  {error:<11}  {:>8}/s  {eta}",
             format!("{samples}{target}"),
             duration(status.seconds),
             count(status.samples_per_second),
