@@ -268,3 +268,21 @@ fn stop_by_error_and_by_time() {
         session.status().state == SessionState::Finished(StopReason::Seconds)
     });
 }
+
+#[test]
+fn a_fault_in_one_picture_is_told_and_the_next_one_renders() {
+    let mut broken = (*scene()).clone();
+    broken.instances[0].geometry = 1_000_000;
+    let broken = Arc::new(broken);
+    let session = RenderSession::new(SessionOptions { interactive: true }, || ());
+    let mut bad_job = job(&scene(), 2);
+    bad_job.scene = broken;
+    session.request(bad_job.clone());
+    wait_until("a message", || session.status().message.is_some());
+    session.request(bad_job);
+    assert_eq!(session.status().state, SessionState::Idle);
+    session.request(job(&scene(), 2));
+    let picture = finish(&session);
+    assert!(picture.pixels.iter().any(|p| p.max_element() > 0.0));
+    assert_eq!(session.status().message, None);
+}

@@ -1,5 +1,6 @@
 //! The session's own thread: takes the latest job, prepares, previews, renders, publishes.
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
@@ -128,8 +129,15 @@ impl Shared {
     }
 }
 
-/// The life of the session's thread.
+/// The life of the session's thread. A fault in one picture ends that picture, not the session.
 pub(super) fn run(shared: &Shared) {
     let mut turn = turn::Turn::new(shared);
-    while turn.take() {}
+    loop {
+        // Whatever a panic left half done is thrown away by `recover`.
+        match catch_unwind(AssertUnwindSafe(|| turn.take())) {
+            Ok(true) => {}
+            Ok(false) => break,
+            Err(_) => turn.recover(),
+        }
+    }
 }

@@ -141,6 +141,9 @@ fn render(job: RenderJob, progress: &mut Progress<std::io::Stderr>) -> Result<Ou
             session.pause();
             continue;
         }
+        if let Some(message) = status.message {
+            return Err(Status::Failed.because()(anyhow!(message)));
+        }
         progress.update(&standing(&status, &settings));
         let has_ended = status.is_finished() || (is_interrupted && status.is_held());
         if let Some(snapshot) = session.snapshot().filter(|_| has_ended) {

@@ -14,6 +14,8 @@ use crate::session::{RenderJob, SessionState};
 const PUBLISH_EVERY: [Duration; 2] = [Duration::from_millis(1000), Duration::from_millis(33)];
 /// Snapshots may cost one part in this many of the time.
 const PUBLISH_SHARE: u32 = 12;
+/// What the user is told after a panic.
+const FAULT: &str = "A fault inside softbox ended this picture; please report it with the scene. Change a setting or open another scene to go on.";
 /// Paths per second assumed before anything was measured.
 const FIRST_RATE: f64 = 200_000.0;
 
@@ -30,6 +32,8 @@ pub(super) struct Turn<'a> {
     publish_cost: Duration,
     /// The picture has samples that no snapshot shows.
     has_news: bool,
+    /// The job that ended in a panic; it is not tried again.
+    failed: Option<RenderJob>,
 }
 
 impl<'a> Turn<'a> {
@@ -47,6 +51,7 @@ impl<'a> Turn<'a> {
             published: Instant::now(),
             publish_cost: Duration::ZERO,
             has_news: false,
+            failed: None,
         }
     }
 
@@ -60,9 +65,11 @@ impl<'a> Turn<'a> {
             }
             (wish.job.clone(), std::mem::take(&mut wish.restart))
         };
+        let job = job.filter(|job| restart || self.failed.as_ref() != Some(job));
         let Some(job) = job else {
             return self.wait(seen);
         };
+        self.failed = None;
         if self.accept(job, restart, seen).is_break() {
             return true;
         }
@@ -79,6 +86,22 @@ impl<'a> Turn<'a> {
         }
         self.work(seen);
         true
+    }
+
+    /// After a panic: forgets everything about the picture and waits for another job.
+    pub(super) fn recover(&mut self) {
+        self.picture = None;
+        self.scene = None;
+        self.has_news = false;
+        self.workers = self.workers.resized(self.workers.threads());
+        self.shared.update_status(|status| {
+            status.state = SessionState::Idle;
+            status.message = Some(FAULT.to_owned());
+        });
+        // The same job would fail again.
+        let mut wish = lock(&self.shared.wish);
+        self.failed = wish.job.clone();
+        wish.restart = false;
     }
 
     /// Sleeps until somebody wants something; true.
