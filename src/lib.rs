@@ -39,6 +39,8 @@
 //!   are addressed by bounce and [`sampling::Slot`], never drawn in sequence. Threads, tiles,
 //!   passes and pauses change no bit of the picture.
 //! - [`integrator::reference()`] and [`integrator::Wavefront`] give the same bits.
+//! - [`integrator::reference_f64`] repeats every path in double precision with formulas of its own;
+//!   but for the few that rounding sends elsewhere, both give the same radiance.
 //! - Tracing is a batch: [`geometry::Aggregate::closest_hit`], [`geometry::Aggregate::any_hit`].
 //!   It is watertight, and gives what testing every primitive gives, bit for bit.
 //! - [`scene::PreparedScene`] is immutable and shared by `Arc`.

@@ -24,6 +24,10 @@ impl Beckmann {
         }
     }
 
+    pub(super) fn alpha(self) -> f32 {
+        self.alpha
+    }
+
     /// The area of microfacets with normal `m` per area and steradian, D(m).
     ///
     /// Walter, Marschner, Li, Torrance 2007, "Microfacet Models for Refraction through Rough

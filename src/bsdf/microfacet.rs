@@ -28,6 +28,21 @@ impl Microfacet {
         }
     }
 
+    /// The root-mean-square slope, at least 10⁻³.
+    pub fn alpha(&self) -> f32 {
+        self.distribution.alpha()
+    }
+
+    /// Real part of the index of refraction per channel.
+    pub fn eta(&self) -> Rgb {
+        self.eta
+    }
+
+    /// Imaginary part of the index of refraction per channel.
+    pub fn k(&self) -> Rgb {
+        self.k
+    }
+
     pub(super) fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {
         let Some((wo, wi, m)) = half_vector(wo, wi) else {
             return Rgb::ZERO;

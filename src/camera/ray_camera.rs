@@ -1,4 +1,4 @@
-use glam::{DVec3, Vec2, Vec3};
+use glam::{DVec2, DVec3, Vec2, Vec3};
 
 use super::Camera;
 use crate::math::{Normalization, Ray};
@@ -42,18 +42,26 @@ impl RayCamera {
     /// picture). `lens` is uniform on the unit disk and is used only by cameras with a lens.
     /// The direction is of unit length.
     pub fn generate_ray(&self, position: Vec2, lens: impl FnOnce() -> Vec2) -> Ray {
-        let x = (2.0 * f64::from(position.x) / self.width - 1.0) * self.half_width;
-        let y = (1.0 - 2.0 * f64::from(position.y) / self.height) * self.half_height;
+        let (origin, direction) = self.generate_ray_f64(position.as_dvec2(), || lens().as_dvec2());
+        Ray::new(origin.as_vec3(), direction.as_vec3())
+    }
+
+    /// Origin and unit direction of [`Self::generate_ray`] in double precision.
+    pub fn generate_ray_f64(
+        &self,
+        position: DVec2,
+        lens: impl FnOnce() -> DVec2,
+    ) -> (DVec3, DVec3) {
+        let x = (2.0 * position.x / self.width - 1.0) * self.half_width;
+        let y = (1.0 - 2.0 * position.y / self.height) * self.half_height;
         let direction = self.right * x + self.up * y + self.forward;
         if self.lens_radius == 0.0 {
-            return Ray::new(self.eye.as_vec3(), unit(direction));
+            return (self.eye, unit(direction));
         }
-        let lens = lens().as_dvec2() * self.lens_radius;
+        let lens = lens() * self.lens_radius;
         let origin = self.eye + self.right * lens.x + self.up * lens.y;
-        Ray::new(
-            origin.as_vec3(),
-            unit(self.eye + direction * self.focal_distance - origin),
-        )
+        let in_focus = self.eye + direction * self.focal_distance;
+        (origin, unit(in_focus - origin))
     }
 
     /// The view direction.
@@ -62,8 +70,8 @@ impl RayCamera {
     }
 }
 
-fn unit(direction: DVec3) -> Vec3 {
-    direction.normalize_or(DVec3::NEG_Z).as_vec3()
+fn unit(direction: DVec3) -> DVec3 {
+    direction.normalize_or(DVec3::NEG_Z)
 }
 
 #[cfg(test)]

@@ -184,6 +184,10 @@ impl PathTracer<'_> {
     /// What a gathering ray brings back.
     pub(super) fn gathered(&self, ray: &Ray, hit: &Hit) -> Rgb {
         if hit.is_miss() {
+            // The course's directions meet surfaces only.
+            if self.scene.is_course_compatible() {
+                return Rgb::ZERO;
+            }
             return self.scene.environment_radiance(ray.direction, false);
         }
         self.scene

@@ -3,10 +3,12 @@
 //! `path` holds the steps of a path, each a few lines; `reference` takes them for one path at a
 //! time and is the teaching text and the oracle; `wavefront` takes the same steps for a batch of
 //! paths, stage by stage. Both draw the same random numbers and give the same bits.
+//! `double` is the reference once more in double precision, with formulas of its own.
 //! `first_hit` answers the views that need no light. Nothing here knows threads, films or clocks.
 
 mod counts;
 mod direct;
+mod double;
 mod first_hit;
 mod path;
 mod reference;
@@ -14,6 +16,7 @@ mod wavefront;
 
 pub use counts::PathCounts;
 pub use direct::DirectPlan;
+pub use double::reference_f64;
 pub use first_hit::first_hit;
 pub use path::{Path, PathId, PathSettings, PathTracer};
 pub use reference::reference;

@@ -11,12 +11,12 @@ use crate::scene::{PreparedScene, SurfaceInteraction};
 use crate::settings::{MaxDepth, Mode, RenderSettings};
 
 /// Smallest probability with which Russian roulette lets a path live.
-const MIN_SURVIVAL: f32 = 0.05;
+pub(super) const MIN_SURVIVAL: f32 = 0.05;
 /// From this bounce on no path is sure to live: light trapped between perfect mirrors or by total
 /// reflection would go on for ever.
-const TRAPPED_AFTER: u32 = 32;
+pub(super) const TRAPPED_AFTER: u32 = 32;
 /// The largest probability from then on.
-const TRAPPED_SURVIVAL: f32 = 0.95;
+pub(super) const TRAPPED_SURVIVAL: f32 = 0.95;
 
 /// The settings that a path depends on.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -94,6 +94,17 @@ impl AreaLight {
         self.two_sided
     }
 
+    /// The rule for the density.
+    pub fn density(&self) -> AreaDensity {
+        self.density
+    }
+
+    /// The triangle that `u` in [0, 1) picks in proportion to area, counted from 0; 0 for a
+    /// rectangle, `None` for a light without area.
+    pub fn choose_part(&self, u: f32) -> Option<usize> {
+        self.by_area.as_ref().map(|parts| parts.sample(u).0)
+    }
+
     /// Total area of one side, in scene units squared.
     pub fn area(&self) -> f32 {
         self.area
@@ -160,7 +171,7 @@ impl AreaLight {
 
     /// Point, unit normal and primitive.
     fn point_on(&self, shapes: &Shapes, u_choice: f32, u: Vec2) -> Option<(Vec3, Vec3, u32)> {
-        let (chosen, ..) = self.by_area.as_ref()?.sample(u_choice);
+        let chosen = self.choose_part(u_choice)?;
         match &self.shape {
             AreaShape::Triangles { primitives } => {
                 let primitive = primitives[chosen];

@@ -23,6 +23,17 @@ pub struct EnvironmentLight {
     flux: f32,
 }
 
+/// A part of an [`EnvironmentLight`], as it is chosen for sampling.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum EnvironmentPart {
+    /// The constant sphere.
+    Sky,
+    /// The constant upper half.
+    Ambient,
+    /// The picture, at this share of its width (from the left) and height (from the top).
+    Map(Vec2),
+}
+
 impl EnvironmentLight {
     /// `sky` is the radiance of the whole sphere; `ambient` that of the half above y = 0, which camera
     /// rays do not see; `map` is a latitude-longitude picture of radiance, top row at +y, column
@@ -57,16 +68,47 @@ impl EnvironmentLight {
         self.sky + ambient + map
     }
 
-    pub(super) fn sample(&self, u_choice: f32, u: Vec2) -> Option<LightSample> {
+    /// Radiance of the whole sphere.
+    pub fn sky(&self) -> Rgb {
+        self.sky
+    }
+
+    /// Radiance of the half above y = 0, which camera rays do not see.
+    pub fn ambient(&self) -> Rgb {
+        self.ambient
+    }
+
+    /// The picture; `None` when there is none or it is black.
+    pub fn map(&self) -> Option<&Image<Rgb>> {
+        self.map.as_ref().map(|map| map.image.as_ref())
+    }
+
+    /// Luminance times solid angle over the whole sphere, all parts together.
+    pub fn flux(&self) -> f32 {
+        self.flux
+    }
+
+    /// The part that `u_choice` in [0, 1) picks in proportion to flux, and where in the picture
+    /// `u` in [0, 1)² falls; `None` when all is black.
+    pub fn choose(&self, u_choice: f32, u: Vec2) -> Option<EnvironmentPart> {
         let (part, ..) = self.parts.as_ref()?.sample(u_choice);
-        let wi = match (part, &self.map) {
-            (SKY, _) => uniform_sphere(u),
-            (AMBIENT, _) => {
+        match (part, &self.map) {
+            (SKY, _) => Some(EnvironmentPart::Sky),
+            (AMBIENT, _) => Some(EnvironmentPart::Ambient),
+            (_, map) => map
+                .as_ref()
+                .map(|map| EnvironmentPart::Map(map.distribution.sample_continuous(u).0)),
+        }
+    }
+
+    pub(super) fn sample(&self, u_choice: f32, u: Vec2) -> Option<LightSample> {
+        let wi = match self.choose(u_choice, u)? {
+            EnvironmentPart::Sky => uniform_sphere(u),
+            EnvironmentPart::Ambient => {
                 let up = uniform_hemisphere(u);
                 Vec3::new(up.y, up.z, up.x)
             }
-            (_, Some(map)) => map.sample(u),
-            (_, None) => return None,
+            EnvironmentPart::Map(uv) => self.map.as_ref()?.direction(uv),
         };
         Some(LightSample {
             wi,
@@ -143,9 +185,9 @@ impl Map {
         })
     }
 
-    /// Even over the solid angle of a texel, so that the density is exactly the picture.
-    fn sample(&self, u: Vec2) -> Vec3 {
-        let (uv, _) = self.distribution.sample_continuous(u);
+    /// The direction of a place of the picture. Even places become even over the solid angle of a
+    /// texel, so that the density is exactly the picture.
+    fn direction(&self, uv: Vec2) -> Vec3 {
         let place = f64::from(uv.y) * self.image.height() as f64;
         let row = (place as usize).min(self.image.height() - 1);
         let (top, bottom) = (self.edges[row], self.edges[row + 1]);

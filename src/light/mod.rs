@@ -18,8 +18,8 @@ use crate::geometry::Shapes;
 
 pub use area::{AreaDensity, AreaLight, AreaShape};
 pub use directional::DirectionalLight;
-pub use environment::EnvironmentLight;
-pub use point::PointLight;
+pub use environment::{EnvironmentLight, EnvironmentPart};
+pub use point::{PointFalloff, PointLight};
 pub use sampler::LightSampler;
 pub use sphere::SphereLight;
 pub use spot::SpotLight;

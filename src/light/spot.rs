@@ -33,7 +33,9 @@ impl SpotLight {
     }
 
     pub(super) fn sample(&self, from: Vec3) -> Option<LightSample> {
-        sample_point(from, self.position, |wi| self.intensity_towards(-wi))
+        sample_point(from, self.position, |wi, distance| {
+            self.intensity_towards(-wi) / distance / distance
+        })
     }
 
     /// ∫ cosᵉ over the cone is 2π (1 − cosᵉ⁺¹ of the rim) / (e + 1).

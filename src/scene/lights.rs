@@ -3,11 +3,11 @@
 use glam::DVec3;
 
 use super::emitters::EmittingRectangle;
-use super::{LightKind, Scene};
+use super::{LightKind, LightNode, Scene};
 use crate::geometry::Shapes;
 use crate::light::{
     AreaDensity, AreaLight, AreaShape, DirectionalLight, EnvironmentLight, Light, LightSampler,
-    PointLight, SpotLight,
+    PointFalloff, PointLight, SpotLight,
 };
 use crate::math::Normalization;
 
@@ -91,50 +91,14 @@ pub(super) fn light_nodes(
     normalization: &Normalization,
     table: &mut LightTable,
 ) {
-    // Irradiance I/d² must not depend on the unit of d.
-    let intensity_scale = (normalization.scale * normalization.scale) as f32;
-    for light in &scene.lights {
-        let place = light.world_from_light;
-        let position = normalization.point_to_scene(place.transform_point3(DVec3::ZERO));
-        let forward = place.transform_vector3(DVec3::NEG_Z);
-        let axis = forward.try_normalize().unwrap_or(DVec3::NEG_Y).as_vec3();
-        match light.kind {
-            LightKind::Area { .. } => {}
-            LightKind::Point { intensity } => {
-                let intensity = intensity * intensity_scale;
-                table.add_sampled(Light::Point(PointLight {
-                    position,
-                    intensity,
-                }));
-            }
-            LightKind::Spot {
-                intensity,
-                cone_angle,
-                exponent,
-            } => {
-                table.add_sampled(Light::Spot(SpotLight {
-                    position,
-                    axis,
-                    intensity: intensity * intensity_scale,
-                    cos_half_angle: (cone_angle * 0.5).cos() as f32,
-                    exponent: exponent as f32,
-                }));
-            }
-            LightKind::Directional { irradiance } => {
-                let to_light = if course_compatible {
-                    // The course adds the node's translation to the direction.
-                    -(forward + place.transform_point3(DVec3::ZERO))
-                        .try_normalize()
-                        .unwrap_or(DVec3::NEG_Y)
-                        .as_vec3()
-                } else {
-                    -axis
-                };
-                table.add_sampled(Light::Directional(DirectionalLight {
-                    to_light,
-                    irradiance,
-                }));
-            }
+    for node in &scene.lights {
+        let light = if course_compatible {
+            course_light(node, normalization)
+        } else {
+            node_light(node, normalization)
+        };
+        if let Some(light) = light {
+            table.add_sampled(light);
         }
     }
     let environment = &scene.environment;
@@ -142,5 +106,61 @@ pub(super) fn light_nodes(
     if map.is_some() || (environment.ambient + environment.sky).max_element() > 0.0 {
         let light = EnvironmentLight::new(environment.sky, environment.ambient, map);
         table.environment = Some(table.add_sampled(Light::Environment(light)));
+    }
+}
+
+/// The light of a node; `None` for area lights, which are surfaces.
+fn node_light(node: &LightNode, normalization: &Normalization) -> Option<Light> {
+    // Irradiance I/d² must not depend on the unit of d.
+    let intensity_scale = (normalization.scale * normalization.scale) as f32;
+    let place = node.world_from_light;
+    let position = normalization.point_to_scene(place.transform_point3(DVec3::ZERO));
+    let forward = place.transform_vector3(DVec3::NEG_Z);
+    let axis = forward.try_normalize().unwrap_or(DVec3::NEG_Y).as_vec3();
+    match node.kind {
+        LightKind::Area { .. } => None,
+        LightKind::Point { intensity } => Some(Light::Point(PointLight {
+            position,
+            intensity: intensity * intensity_scale,
+            falloff: PointFalloff::Correct,
+        })),
+        LightKind::Spot {
+            intensity,
+            cone_angle,
+            exponent,
+        } => Some(Light::Spot(SpotLight {
+            position,
+            axis,
+            intensity: intensity * intensity_scale,
+            cos_half_angle: (cone_angle * 0.5).cos() as f32,
+            exponent: exponent as f32,
+        })),
+        LightKind::Directional { irradiance } => Some(Light::Directional(DirectionalLight {
+            to_light: -axis,
+            irradiance,
+        })),
+    }
+}
+
+/// The same as the course's program has it: point lights do not fade, spot lights give nothing, and
+/// the direction of a directional light is moved by its node's translation, so that it comes from about
+/// where the node stands.
+fn course_light(node: &LightNode, normalization: &Normalization) -> Option<Light> {
+    let place = node.world_from_light;
+    match node.kind {
+        LightKind::Area { .. } | LightKind::Spot { .. } => None,
+        LightKind::Point { intensity } => Some(Light::Point(PointLight {
+            position: normalization.point_to_scene(place.transform_point3(DVec3::ZERO)),
+            intensity,
+            falloff: PointFalloff::Course,
+        })),
+        LightKind::Directional { irradiance } => Some(Light::Directional(DirectionalLight {
+            to_light: place
+                .transform_point3(DVec3::NEG_Z)
+                .try_normalize()
+                .unwrap_or(DVec3::Y)
+                .as_vec3(),
+            irradiance,
+        })),
     }
 }

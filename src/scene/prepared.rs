@@ -81,7 +81,7 @@ impl PreparedScene {
     }
 
     /// Unit normals at the corners of triangle `primitive`; `None` when it is flat.
-    pub(super) fn corner_normals(&self, primitive: u32) -> Option<[Vec3; 3]> {
+    pub fn corner_normals(&self, primitive: u32) -> Option<[Vec3; 3]> {
         let index = *self.smooth.get(primitive as usize)?;
         (index != FLAT).then(|| self.corner_normals[index as usize])
     }
@@ -119,7 +119,8 @@ impl PreparedScene {
         &self.instance_names[self.owner(primitive).instance as usize]
     }
 
-    fn light_of(&self, primitive: u32) -> Option<u32> {
+    /// The light that `primitive` is part of; `None` when it does not emit.
+    pub fn light_of(&self, primitive: u32) -> Option<u32> {
         let light = self.owner(primitive).light;
         (light != DARK).then_some(light)
     }
@@ -176,6 +177,11 @@ impl PreparedScene {
     /// Light number `light`.
     pub fn light(&self, light: u32) -> &Light {
         &self.lights[light as usize]
+    }
+
+    /// The light from infinity that fills the sphere, if there is any.
+    pub fn environment_light(&self) -> Option<u32> {
+        self.environment
     }
 
     /// The number of lights.

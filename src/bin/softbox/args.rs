@@ -103,6 +103,9 @@ pub(crate) struct WindowArgs {
     /// Write a line of state to standard error whenever something changes in the window
     #[arg(long)]
     pub(crate) log_events: bool,
+    /// Measure for 20 seconds how fluent the window is, print the figures and close it
+    #[arg(long)]
+    pub(crate) measure_fluency: bool,
 }
 
 /// How a headless run speaks. Results go to standard output, all else to standard error.

@@ -4,7 +4,7 @@ use glam::{Vec2, Vec3};
 
 use crate::color::Rgb;
 use crate::geometry::Shapes;
-use crate::light::{DirectionalLight, Light, PointLight, SpotLight};
+use crate::light::{DirectionalLight, Light, PointFalloff, PointLight, SpotLight};
 
 /// C13 of the closed forms, and the cone of a spot light.
 #[test]
@@ -14,6 +14,7 @@ fn point_spot_and_directional_lights_are_exact() {
     let point = Light::Point(PointLight {
         position: Vec3::Y * 2.0,
         intensity,
+        falloff: PointFalloff::Correct,
     });
     let s = point
         .sample(&none, Vec3::ZERO, 0.0, Vec2::ZERO)

@@ -22,6 +22,7 @@ use super::navigation::Navigation;
 use super::options::ViewerOptions;
 use super::panels::{self, menu::Menu, status_bar::StatusBar};
 use super::preferences::Preferences;
+use super::probe::Probe;
 use super::viewport::Viewport;
 use super::windows::Windows;
 
@@ -35,6 +36,7 @@ pub(super) struct App {
     pub(super) windows: Windows,
     pub(super) preferences: Preferences,
     pub(super) log: EventLog,
+    probe: Option<Probe>,
     /// True until the file of the command line is open: its camera belongs to that file.
     pub(super) is_first_scene: bool,
 }
@@ -99,6 +101,7 @@ impl App {
             windows: Windows::default(),
             preferences,
             log: EventLog::new(options.logs_events, options.exit_after),
+            probe: options.measures_fluency.then(Probe::new),
             is_first_scene: options.scene.is_some(),
         };
         if let Some(path) = options.scene {
@@ -212,6 +215,14 @@ impl eframe::App for App {
                 .latency
                 .arrive(&frame.snapshot.camera, Instant::now());
             self.view.viewport.upload(&ctx, frame);
+        }
+        if let Some(probe) = &mut self.probe {
+            let shown = self
+                .view
+                .viewport
+                .frame()
+                .map(|frame| frame.snapshot.camera);
+            probe.frame(&ctx, &mut self.document, &self.engine, shown);
         }
         let bindings = keys::bindings(self.preferences.keys);
         let is_flying = self.view.navigation.is_flying();

@@ -27,6 +27,7 @@ mod orbit;
 mod panels;
 mod preferences;
 mod presenter;
+mod probe;
 mod projection;
 mod provenance;
 mod shown;

@@ -43,6 +43,8 @@ pub(super) struct ViewerOptions {
     pub(super) exit_after: Option<Duration>,
     /// Writes a line of state to standard error whenever something changes.
     pub(super) logs_events: bool,
+    /// Measures how fluent the window is, then closes it.
+    pub(super) measures_fluency: bool,
 }
 
 impl ViewerOptions {
@@ -69,6 +71,7 @@ impl ViewerOptions {
                 .exit_after
                 .and_then(|seconds| Duration::try_from_secs_f64(seconds).ok()),
             logs_events: window.log_events,
+            measures_fluency: window.measure_fluency,
         }
     }
 }

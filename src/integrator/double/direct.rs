@@ -1,0 +1,127 @@
+//! Direct light at a vertex, in double precision.
+
+use glam::DVec3;
+
+use super::path::{Path, Vertex};
+use super::surface::{Surface, off_surface};
+use super::trace::{Ray, closest, is_occluded};
+use super::{bsdf, environment, light, warp};
+use crate::integrator::PathTracer;
+use crate::integrator::direct::DirectSample;
+use crate::light::Light;
+use crate::sampling::Slot;
+
+/// Shadow rays end this share of the way to the light.
+const SHADOW_END: f64 = 1.0 - 1e-12;
+
+/// The light that arrives at `vertex` straight from lights, times the throughput: the sum of the
+/// samples of the plan.
+pub(super) fn direct_light(tracer: &PathTracer<'_>, path: &Path, vertex: &Vertex<'_>) -> DVec3 {
+    let samples = tracer.plan.samples.iter().zip(0..);
+    let sum = samples.map(|(sample, number)| match *sample {
+        DirectSample::Light { light, weight } => {
+            from_light(tracer, path, vertex, number, light) * f64::from(weight)
+        }
+        DirectSample::AnyLight { weight } => {
+            let u = path.sampler.get_1d(path.bounce, Slot::LightChoice(number));
+            tracer
+                .scene
+                .choose_light(u)
+                .map_or(DVec3::ZERO, |(light, pmf)| {
+                    from_light(tracer, path, vertex, number, light) * f64::from(weight / pmf)
+                })
+        }
+        DirectSample::Hemisphere { weight } => {
+            from_hemisphere(tracer, path, vertex, number) * f64::from(weight)
+        }
+    });
+    path.throughput * sum.sum::<DVec3>()
+}
+
+/// What a point of light `index` sends through the vertex.
+fn from_light(
+    tracer: &PathTracer<'_>,
+    path: &Path,
+    vertex: &Vertex<'_>,
+    number: u32,
+    index: u32,
+) -> DVec3 {
+    let scene = tracer.scene;
+    let u = path.sampler.get_2d(path.bounce, Slot::LightPoint(number));
+    let u_part = path
+        .sampler
+        .get_2d(path.bounce, Slot::LightChoice(number))
+        .y;
+    let from = vertex.surface.point;
+    let Some(sample) = light::sample(scene.light(index), scene.shapes(), from, u_part, u) else {
+        return DVec3::ZERO;
+    };
+    let Some(wi) = vertex.local(sample.wi) else {
+        return DVec3::ZERO;
+    };
+    let (value, scatter_pdf) = bsdf::eval_and_pdf(vertex.bsdf, vertex.wo, wi);
+    let mut light = value * wi.z.abs() * sample.radiance / sample.pdf;
+    if tracer.shares_emission() && !sample.is_delta {
+        let n = f64::from(tracer.settings.light_samples);
+        let light_pdf = n * sample.pdf * f64::from(scene.light_pmf(index));
+        light *= warp::power_heuristic(light_pdf, scatter_pdf);
+    }
+    let origin = vertex.surface.leave(sample.wi);
+    let shadow_ray = match sample.end {
+        Some((point, normal)) => Ray {
+            origin,
+            direction: off_surface(point, normal, -sample.wi) - origin,
+            t_max: SHADOW_END,
+        },
+        None => Ray {
+            origin,
+            direction: sample.wi,
+            t_max: f64::INFINITY,
+        },
+    };
+    if light == DVec3::ZERO || is_occluded(scene, &shadow_ray) {
+        DVec3::ZERO
+    } else {
+        light
+    }
+}
+
+/// What an even direction of the hemisphere meets, through the vertex.
+fn from_hemisphere(
+    tracer: &PathTracer<'_>,
+    path: &Path,
+    vertex: &Vertex<'_>,
+    number: u32,
+) -> DVec3 {
+    let u = path.sampler.get_2d(path.bounce, Slot::Hemisphere(number));
+    let up = warp::hemisphere(u.as_dvec2());
+    let wi = DVec3::new(up.x, up.y, up.z.copysign(vertex.wo.z));
+    let direction = vertex.frame.to_world(wi).normalize();
+    if vertex.local(direction).is_none() {
+        return DVec3::ZERO;
+    }
+    let ray = Ray {
+        origin: vertex.surface.leave(direction),
+        direction,
+        t_max: f64::INFINITY,
+    };
+    let (value, _) = bsdf::eval_and_pdf(vertex.bsdf, vertex.wo, wi);
+    value * wi.z.abs() / warp::HEMISPHERE_PDF * gathered(tracer, &ray)
+}
+
+/// Emission that `ray` meets.
+fn gathered(tracer: &PathTracer<'_>, ray: &Ray) -> DVec3 {
+    let scene = tracer.scene;
+    match closest(scene, ray) {
+        Some(hit) => {
+            let surface = Surface::new(scene, ray, &hit);
+            scene.light_of(hit.primitive).map_or(DVec3::ZERO, |index| {
+                light::emitted(scene.light(index), surface.geometric_normal, ray.direction)
+            })
+        }
+        None => match scene.environment_light().map(|index| scene.light(index)) {
+            Some(Light::Environment(sky)) => environment::radiance(sky, ray.direction, false),
+            _ => DVec3::ZERO,
+        },
+    }
+}

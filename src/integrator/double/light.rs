@@ -1,0 +1,170 @@
+//! Lights seen from a point, in double precision.
+
+use glam::{DVec3, Vec2};
+
+use super::{environment, sphere_light, warp};
+use crate::geometry::Shapes;
+use crate::light::{AreaDensity, AreaLight, AreaShape, Light, SpotLight};
+
+/// A direction in which a light is seen.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LightSample {
+    /// Unit vector towards the light.
+    pub(super) wi: DVec3,
+    /// Radiance from there; for delta lights irradiance.
+    pub(super) radiance: DVec3,
+    /// Density per steradian; 1 for delta lights.
+    pub(super) pdf: f64,
+    pub(super) is_delta: bool,
+    /// Point and unit normal (or zero) of the light; `None` at infinity.
+    pub(super) end: Option<(DVec3, DVec3)>,
+}
+
+/// A direction from `from` to `light`; `None` where it sends nothing there.
+pub(super) fn sample(
+    light: &Light,
+    shapes: &Shapes,
+    from: DVec3,
+    u_choice: f32,
+    u: Vec2,
+) -> Option<LightSample> {
+    match light {
+        Light::Area(area) => sample_area(area, shapes, from, u_choice, u),
+        Light::Sphere(sphere) => {
+            let shape = shapes.sphere(sphere.primitive)?;
+            sphere_light::sample(sphere, shape, from, u.as_dvec2())
+        }
+        Light::Point(point) => {
+            let intensity = point.intensity.as_dvec3();
+            sample_point(from, point.position.as_dvec3(), |_| intensity)
+        }
+        Light::Spot(spot) => {
+            sample_point(from, spot.position.as_dvec3(), |wi| intensity(spot, -wi))
+        }
+        Light::Directional(directional) => Some(LightSample {
+            wi: directional.to_light.as_dvec3().normalize(),
+            radiance: directional.irradiance.as_dvec3(),
+            pdf: 1.0,
+            is_delta: true,
+            end: None,
+        }),
+        Light::Environment(environment) => environment::sample(environment, u_choice, u),
+    }
+}
+
+/// The density of [`sample`] for the unit direction `wi` from `from`, which meets the surface of
+/// `light` at `point`, whose normal is `normal`, on a side that emits.
+pub(super) fn pdf(
+    light: &Light,
+    shapes: &Shapes,
+    from: DVec3,
+    (point, normal): (DVec3, DVec3),
+) -> f64 {
+    match light {
+        Light::Area(area) => {
+            let to_light = point - from;
+            area_pdf(area, to_light.length(), normal.dot(to_light.normalize()))
+        }
+        Light::Sphere(sphere) => shapes
+            .sphere(sphere.primitive)
+            .map_or(0.0, |shape| sphere_light::pdf(sphere, shape, from)),
+        Light::Point(_) | Light::Spot(_) | Light::Directional(_) | Light::Environment(_) => 0.0,
+    }
+}
+
+/// Radiance that the surface of `light` sends against the direction `wi`.
+pub(super) fn emitted(light: &Light, normal: DVec3, wi: DVec3) -> DVec3 {
+    let (radiance, two_sided) = match light {
+        Light::Area(area) => (area.radiance(), area.is_two_sided()),
+        Light::Sphere(sphere) => (sphere.radiance, sphere.two_sided),
+        Light::Point(_) | Light::Spot(_) | Light::Directional(_) | Light::Environment(_) => {
+            return DVec3::ZERO;
+        }
+    };
+    if two_sided || normal.dot(wi) < 0.0 {
+        radiance.as_dvec3()
+    } else {
+        DVec3::ZERO
+    }
+}
+
+fn sample_area(
+    area: &AreaLight,
+    shapes: &Shapes,
+    from: DVec3,
+    u_choice: f32,
+    u: Vec2,
+) -> Option<LightSample> {
+    let u = u.as_dvec2();
+    let part = area.choose_part(u_choice)?;
+    let (corner, edge_1, edge_2, (b1, b2)) = match area.shape() {
+        AreaShape::Triangles { primitives } => {
+            let [a, b, c] = shapes
+                .vertices(primitives[part] as usize)
+                .map(|v| v.as_dvec3());
+            (a, b - a, c - a, warp::triangle(u))
+        }
+        AreaShape::Rectangle {
+            corner,
+            edge_u,
+            edge_v,
+        } => {
+            let [a, e1, e2] = [corner, edge_u, edge_v].map(|v| v.as_dvec3());
+            (a, e1, e2, (u.x, u.y))
+        }
+    };
+    let point = corner + edge_1 * b1 + edge_2 * b2;
+    let normal = edge_1.cross(edge_2).normalize();
+    let to_light = point - from;
+    let wi = to_light.normalize();
+    let pdf = area_pdf(area, to_light.length(), normal.dot(wi));
+    (pdf > 0.0).then(|| LightSample {
+        wi,
+        radiance: area.radiance().as_dvec3(),
+        pdf,
+        is_delta: false,
+        end: Some((point, normal)),
+    })
+}
+
+/// 1 / A per area is r² / (A cos θ) per steradian; `cos_wi` is that of the direction to the light.
+fn area_pdf(area: &AreaLight, distance: f64, cos_wi: f64) -> f64 {
+    let cos = if area.is_two_sided() {
+        cos_wi.abs()
+    } else {
+        -cos_wi
+    };
+    if cos <= 0.0 {
+        return 0.0;
+    }
+    let falloff = match area.density() {
+        AreaDensity::Correct => distance * distance,
+        AreaDensity::Course => distance,
+    };
+    falloff / (f64::from(area.area()) * cos)
+}
+
+fn sample_point(
+    from: DVec3,
+    position: DVec3,
+    intensity_along: impl Fn(DVec3) -> DVec3,
+) -> Option<LightSample> {
+    let to_light = position - from;
+    let wi = to_light.try_normalize()?;
+    Some(LightSample {
+        wi,
+        radiance: intensity_along(wi) / to_light.length_squared(),
+        pdf: 1.0,
+        is_delta: true,
+        end: Some((position, DVec3::ZERO)),
+    })
+}
+
+fn intensity(spot: &SpotLight, direction: DVec3) -> DVec3 {
+    let cos = spot.axis.as_dvec3().normalize().dot(direction);
+    if cos > 0.0 && cos >= f64::from(spot.cos_half_angle) {
+        spot.intensity.as_dvec3() * cos.powf(f64::from(spot.exponent))
+    } else {
+        DVec3::ZERO
+    }
+}

@@ -1,0 +1,223 @@
+//! One path from the camera on, in double precision.
+
+use glam::DVec3;
+
+use super::bsdf::{self, Scattered};
+use super::direct::direct_light;
+use super::frame::Frame;
+use super::surface::Surface;
+use super::trace::{Ray, closest};
+use super::{environment, light, warp};
+use crate::bsdf::Bsdf;
+use crate::integrator::path::{MIN_SURVIVAL, TRAPPED_AFTER, TRAPPED_SURVIVAL};
+use crate::integrator::{PathId, PathTracer};
+use crate::light::Light;
+use crate::sampling::{PathSampler, Slot};
+
+/// How emission met by the next ray counts.
+#[derive(Clone, Copy, Debug)]
+enum Previous {
+    /// In full: after the camera and after delta lobes.
+    Blind,
+    /// Not at all: the last vertex has sampled the lights.
+    Counted,
+    /// By multiple importance: the last vertex lies at `from` and sent the ray with density `pdf`.
+    Shared { from: DVec3, pdf: f64 },
+}
+
+/// A path on its way.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Path {
+    pub(super) sampler: PathSampler,
+    ray: Ray,
+    pub(super) throughput: DVec3,
+    radiance: DVec3,
+    /// Surfaces that scattered the path so far.
+    pub(super) bounce: u32,
+    previous: Previous,
+}
+
+/// A surface point that scatters the path.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Vertex<'a> {
+    pub(super) surface: Surface,
+    pub(super) frame: Frame,
+    /// Towards where the path came from, in `frame`.
+    pub(super) wo: DVec3,
+    pub(super) bsdf: &'a Bsdf,
+}
+
+impl<'a> Vertex<'a> {
+    fn new(surface: Surface, wo: DVec3, bsdf: &'a Bsdf) -> Self {
+        // Where interpolated and true normal disagree on the side, the true one is shaded.
+        let agree = wo.dot(surface.geometric_normal) * wo.dot(surface.shading_normal) > 0.0;
+        let frame = Frame::from_normal(if agree {
+            surface.shading_normal
+        } else {
+            surface.geometric_normal
+        });
+        Self {
+            surface,
+            frame,
+            wo: frame.to_local(wo),
+            bsdf,
+        }
+    }
+
+    /// `wi` in the frame; `None` where the normals disagree on its side (Veach 1997, section 5.3).
+    pub(super) fn local(&self, wi: DVec3) -> Option<DVec3> {
+        let local = self.frame.to_local(wi);
+        (local.z * wi.dot(self.surface.geometric_normal) > 0.0).then_some(local)
+    }
+}
+
+/// The radiance of path `id` of `tracer` in double precision, from the same random numbers as
+/// [`super::super::reference()`].
+///
+/// Kajiya 1986, "The Rendering Equation"; Veach 1997, "Robust Monte Carlo Methods for Light
+/// Transport Simulation", chapter 9. Values that are not finite are returned as they are.
+pub fn reference_f64(tracer: &PathTracer<'_>, id: PathId) -> DVec3 {
+    let scene = tracer.scene;
+    let mut path = start(tracer, id);
+    loop {
+        let Some(hit) = closest(scene, &path.ray) else {
+            meet_environment(tracer, &mut path);
+            break;
+        };
+        let surface = Surface::new(scene, &path.ray, &hit);
+        meet_light(tracer, &mut path, &surface);
+        if path.bounce >= tracer.settings.max_depth.0 {
+            break;
+        }
+        let vertex = Vertex::new(surface, -path.ray.direction, scene.bsdf(hit.primitive));
+        if tracer.counts_depth(path.bounce + 1) {
+            path.radiance += direct_light(tracer, &path, &vertex);
+        }
+        if !scatter(tracer, &mut path, &vertex) {
+            break;
+        }
+    }
+    path.radiance
+}
+
+fn start(tracer: &PathTracer<'_>, id: PathId) -> Path {
+    let sampler = PathSampler::new(tracer.settings.seed, id.pixel, id.sample);
+    let pixel = glam::UVec2::from_array(id.pixel).as_dvec2();
+    let position = pixel + sampler.get_2d(0, Slot::Pixel).as_dvec2();
+    let lens = || warp::disk(sampler.get_2d(0, Slot::Lens).as_dvec2());
+    let (origin, direction) = tracer.camera.generate_ray_f64(position, lens);
+    Path {
+        sampler,
+        ray: Ray {
+            origin,
+            direction,
+            t_max: f64::INFINITY,
+        },
+        throughput: DVec3::ONE,
+        radiance: DVec3::ZERO,
+        bounce: 0,
+        previous: Previous::Blind,
+    }
+}
+
+fn meet_environment(tracer: &PathTracer<'_>, path: &mut Path) {
+    let scene = tracer.scene;
+    let Some(index) = scene.environment_light() else {
+        return;
+    };
+    if let Light::Environment(sky) = scene.light(index) {
+        let direction = path.ray.direction;
+        let emitted = environment::radiance(sky, direction, path.bounce == 0);
+        add_emission(tracer, path, emitted, index, |_| {
+            environment::pdf(sky, direction)
+        });
+    }
+}
+
+fn meet_light(tracer: &PathTracer<'_>, path: &mut Path, surface: &Surface) {
+    let scene = tracer.scene;
+    let Some(index) = scene.light_of(surface.primitive) else {
+        return;
+    };
+    let met = scene.light(index);
+    let place = (surface.point, surface.geometric_normal);
+    let emitted = light::emitted(met, place.1, path.ray.direction);
+    add_emission(tracer, path, emitted, index, |from| {
+        light::pdf(met, scene.shapes(), from, place)
+    });
+}
+
+fn add_emission(
+    tracer: &PathTracer<'_>,
+    path: &mut Path,
+    emitted: DVec3,
+    light: u32,
+    pdf_from: impl FnOnce(DVec3) -> f64,
+) {
+    if !tracer.counts_depth(path.bounce) {
+        return;
+    }
+    let weight = match path.previous {
+        Previous::Blind => 1.0,
+        Previous::Counted => 0.0,
+        Previous::Shared { from, pdf } => {
+            let n = f64::from(tracer.settings.light_samples);
+            let light_pdf = n * f64::from(tracer.scene.light_pmf(light)) * pdf_from(from);
+            warp::power_heuristic(pdf, light_pdf)
+        }
+    };
+    path.radiance += path.throughput * emitted * weight;
+}
+
+/// Sends `path` on from `vertex`; false when it ends there.
+fn scatter(tracer: &PathTracer<'_>, path: &mut Path, vertex: &Vertex<'_>) -> bool {
+    let (sampler, bounce) = (path.sampler, path.bounce);
+    let u_lobe = f64::from(sampler.get_1d(bounce, Slot::Lobe));
+    let u = sampler.get_2d(bounce, Slot::Scatter).as_dvec2();
+    let Some(sample) = bsdf::sample(vertex.bsdf, vertex.wo, u_lobe, u) else {
+        return false;
+    };
+    let (wi, weight) = match sample {
+        Scattered::Delta { wi, weight } => {
+            path.previous = Previous::Blind;
+            (wi, weight)
+        }
+        Scattered::Smooth { wi, value, pdf } => {
+            path.previous = if tracer.shares_emission() {
+                let from = vertex.surface.point;
+                Previous::Shared { from, pdf }
+            } else {
+                Previous::Counted
+            };
+            (wi, value * wi.z.abs() / pdf)
+        }
+    };
+    let direction = vertex.frame.to_world(wi).normalize();
+    if vertex.local(direction).is_none() {
+        return false;
+    }
+    path.ray = Ray {
+        origin: vertex.surface.leave(direction),
+        direction,
+        t_max: f64::INFINITY,
+    };
+    path.throughput *= weight;
+    path.bounce += 1;
+    // The first continuation is always taken.
+    path.bounce < 2 || survives(path, f64::from(sampler.get_1d(bounce, Slot::Roulette)))
+}
+
+/// Russian roulette by throughput (Arvo and Kirk 1990, "Particle Transport and Image Synthesis").
+fn survives(path: &mut Path, u: f64) -> bool {
+    let most = if path.bounce < TRAPPED_AFTER {
+        1.0
+    } else {
+        f64::from(TRAPPED_SURVIVAL)
+    };
+    let survival = path
+        .throughput
+        .max_element()
+        .clamp(f64::from(MIN_SURVIVAL), most);
+    path.throughput /= survival;
+    u < survival && path.throughput != DVec3::ZERO
+}
