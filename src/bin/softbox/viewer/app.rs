@@ -1,6 +1,7 @@
 //! The application: composes the parts and runs one frame.
 
 use std::sync::Arc;
+use std::time::Instant;
 
 use eframe::egui::style::ScrollStyle;
 use eframe::egui::{
@@ -16,6 +17,7 @@ use super::event_log::EventLog;
 use super::files::Files;
 use super::inspector::{PickInfo, Picker, PixelValues, pixel_values};
 use super::keys;
+use super::latency::Latency;
 use super::navigation::Navigation;
 use super::options::ViewerOptions;
 use super::panels::{self, menu::Menu, status_bar::StatusBar};
@@ -48,6 +50,7 @@ pub(super) struct ViewState {
     pixel: Option<PixelValues>,
     surface: Option<PickInfo>,
     title: String,
+    latency: Latency,
 }
 
 impl ViewState {
@@ -132,7 +135,13 @@ impl App {
         panels::pixel::show(ui, self.view.pixel.as_ref(), self.view.surface.as_ref());
         let facts = self.view.bvh.facts();
         panels::bvh::show(ui, &mut self.view.bvh, facts.as_ref());
-        panels::statistics::show(ui, &self.engine.status(), self.view.bvh.stats());
+        let latency = self.view.latency.summary();
+        panels::statistics::show(
+            ui,
+            &self.engine.status(),
+            latency.as_ref(),
+            self.view.bvh.stats(),
+        );
     }
 
     fn status_bar(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
@@ -202,6 +211,9 @@ impl eframe::App for App {
         self.take_file_events(&ctx);
         self.view.follow_title(&ctx, self.document.name());
         if let Some(frame) = self.engine.take_frame() {
+            self.view
+                .latency
+                .arrive(&frame.snapshot.camera, Instant::now());
             self.view.viewport.upload(&ctx, frame);
         }
         if let Some(probe) = &mut self.probe {
@@ -234,11 +246,13 @@ impl eframe::App for App {
         for command in commands {
             self.execute(&ctx, command);
         }
+        self.view.latency.ask(&self.document.camera, Instant::now());
         self.engine
             .request(self.document.render_job(), self.document.display);
         let status = self.engine.status();
         self.windows.messages.relay(status.message.as_deref());
-        self.log.note(&self.document, &status);
+        self.log
+            .note(&self.document, &status, self.view.latency.summary());
         self.log.exit_when_due(&ctx);
     }
 

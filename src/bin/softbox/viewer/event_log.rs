@@ -8,6 +8,7 @@ use eframe::egui::{Context, ViewportCommand};
 use softbox::session::{SessionState, SessionStatus};
 
 use super::document::Document;
+use super::latency::LatencySummary;
 
 /// The last line, and when to leave.
 #[derive(Debug)]
@@ -28,13 +29,21 @@ impl EventLog {
     }
 
     /// Writes the state when it differs from the last one.
-    pub(super) fn note(&mut self, document: &Document, status: &SessionStatus) {
+    pub(super) fn note(
+        &mut self,
+        document: &Document,
+        status: &SessionStatus,
+        latency: Option<LatencySummary>,
+    ) {
         if !self.is_on {
             return;
         }
         let line = state_line(document, status);
         if line != self.last {
             self.say(&line);
+            if let Some(latency) = latency {
+                self.say(&format!("latency {latency}"));
+            }
             self.last = line;
         }
     }

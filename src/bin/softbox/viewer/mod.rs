@@ -18,6 +18,7 @@ mod files;
 mod history;
 mod inspector;
 mod keys;
+mod latency;
 mod letterbox;
 mod loader;
 mod navigation;

@@ -41,13 +41,23 @@ pub(crate) fn run(job: &Job, window: &WindowArgs) -> Result<(), Failure> {
         );
         match result {
             Ok(()) => return Ok(()),
-            Err(error) => failures.push(format!("{renderer}: {error}")),
+            Err(error) => failures.push(format!("{renderer}: {}", reason(&error.to_string()))),
         }
     }
     Err(Status::Failed.because()(anyhow!(
         "The window cannot be opened ({}). Render without one: softbox render SCENE -o OUT.png",
         failures.join("; ")
     )))
+}
+
+/// The words of an error of the window system without the place in its source.
+fn reason(error: &str) -> &str {
+    let after_place = error
+        .rsplit_once(".rs:")
+        .and_then(|(_, rest)| rest.split_once(": "));
+    after_place
+        .map_or(error, |(_, words)| words)
+        .trim_end_matches('.')
 }
 
 /// What is shown until the window has read the file: nothing, or the built-in scene for good.
@@ -85,5 +95,17 @@ fn native_options(renderer: Renderer) -> NativeOptions {
             .with_min_inner_size([640.0, 400.0])
             .with_drag_and_drop(true),
         ..NativeOptions::default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::reason;
+
+    #[test]
+    fn reasons_name_no_source_files() {
+        let error = "winit EventLoopError: os error at /some/where/mod.rs:788: No X server.";
+        assert_eq!(reason(error), "No X server");
+        assert_eq!(reason("no adapter: none"), "no adapter: none");
     }
 }

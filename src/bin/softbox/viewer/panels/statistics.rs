@@ -4,10 +4,19 @@ use eframe::egui::{self, Grid, Ui};
 use softbox::bvh::BvhStats;
 use softbox::session::SessionStatus;
 
+use crate::viewer::latency::LatencySummary;
+
 /// The facts of the render and of the hierarchy of the shown scene.
-pub(in crate::viewer) fn show(ui: &mut Ui, status: &SessionStatus, bvh: Option<&BvhStats>) {
+pub(in crate::viewer) fn show(
+    ui: &mut Ui,
+    status: &SessionStatus,
+    latency: Option<&LatencySummary>,
+    bvh: Option<&BvhStats>,
+) {
     egui::CollapsingHeader::new("Statistics").show(ui, |ui| {
-        facts(ui, "render facts", &render_facts(status));
+        let mut lines = render_facts(status);
+        lines.extend(latency.map(|latency| ("Hand to picture", latency.to_string())));
+        facts(ui, "render facts", &lines);
         if let Some(bvh) = bvh {
             ui.add_space(4.0);
             ui.strong("BVH");
