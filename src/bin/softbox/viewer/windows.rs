@@ -47,11 +47,11 @@ impl Windows {
                     .desired_width(420.0)
                     .hint_text("scene.dae");
                 let response = ui.add(edit).labelled_by(name.id);
-                if ui.memory(|memory| memory.focused().is_none()) {
-                    response.request_focus();
-                }
                 let is_entered =
                     response.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
+                if !is_entered && ui.memory(|memory| memory.focused().is_none()) {
+                    response.request_focus();
+                }
                 let is_clicked = ui.button("Open").clicked();
                 if (is_entered || is_clicked) && !text.trim().is_empty() {
                     commands.push(Command::OpenPath(text.trim().into()));

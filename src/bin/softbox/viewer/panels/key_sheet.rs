@@ -20,12 +20,12 @@ const MOUSE: [(&str, &str); 10] = [
 
 /// Shows the sheet while `is_open`.
 pub(in crate::viewer) fn show(ctx: &Context, bindings: &[Binding], is_open: &mut bool) {
+    let height = (ctx.content_rect().height() - 120.0).max(120.0);
     Window::new("Keys and mouse")
         .open(is_open)
         .collapsible(false)
-        .default_width(640.0)
+        .default_size([700.0, height])
         .show(ctx, |ui| {
-            let height = (ui.ctx().content_rect().height() - 120.0).max(120.0);
             egui::ScrollArea::vertical()
                 .max_height(height)
                 .show(ui, |ui| {

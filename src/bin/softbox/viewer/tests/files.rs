@@ -1,6 +1,6 @@
 use std::path::{Path, PathBuf};
 
-use eframe::egui::{DroppedFile, Key};
+use eframe::egui::{DroppedFile, Key, Modifiers};
 use softbox::io::picture::{read_exr, read_png};
 use tempfile::TempDir;
 
@@ -136,6 +136,25 @@ fn pictures_are_written_in_pairs_and_never_over_others() {
         command.contains("--size 64x48") && command.contains("--spp 2"),
         "{command}"
     );
+}
+
+#[test]
+fn a_typed_path_is_opened_by_enter() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("typed.dae");
+    std::fs::write(&path, PLANE).unwrap();
+    let mut harness = viewer();
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::L);
+    harness.run_steps(3);
+    harness
+        .get_by_role_and_label(Role::TextInput, "Path of a scene")
+        .type_text(path.to_str().unwrap());
+    harness.run_steps(2);
+    harness.key_press(Key::Enter);
+    wait(&mut harness, "the scene", |app| {
+        app.document.name() == "typed"
+    });
+    assert!(harness.query_by_label("Path of a scene").is_none());
 }
 
 #[test]
