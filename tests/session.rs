@@ -286,3 +286,45 @@ fn a_fault_in_one_picture_is_told_and_the_next_one_renders() {
     assert!(picture.pixels.iter().any(|p| p.max_element() > 0.0));
     assert_eq!(session.status().message, None);
 }
+
+#[test]
+fn a_new_region_keeps_the_picture_around_it() {
+    let scene = scene();
+    let session = RenderSession::new(SessionOptions { interactive: true }, || ());
+    session.request(job(&scene, 12));
+    let whole = finish(&session);
+    let mut part = job(&scene, 12);
+    let region = softbox::image::Region {
+        x: 20,
+        y: 10,
+        width: 16,
+        height: 16,
+    };
+    part.settings.region = Some(region);
+    session.request(part.clone());
+    wait_until("the region", || {
+        session.status().is_finished()
+            && session
+                .snapshot()
+                .is_some_and(|s| s.settings == part.settings)
+    });
+    // Outside the old picture stays; inside the same samples are taken again.
+    assert_eq!(bits(&finish(&session)), bits(&whole));
+}
+
+#[test]
+fn another_camera_does_not_make_a_build_begin_again() {
+    let scene = Arc::new(softbox::scene::procedural("knot-70k").expect("built in"));
+    let session = RenderSession::new(SessionOptions { interactive: true }, || ());
+    let mut moving = job(&scene, 1);
+    let mut moves = 0;
+    let started = Instant::now();
+    while session.prepared().is_none() {
+        assert!(started.elapsed() < PATIENCE, "the build never ends");
+        moving.camera.eye.x += 0.001;
+        session.request(moving.clone());
+        moves += 1;
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    assert!(moves > 1, "there was time to move");
+}

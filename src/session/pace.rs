@@ -8,6 +8,8 @@ const PREVIEW_BUDGET: f64 = 0.008;
 pub(super) const MAX_PREVIEW_STEP: u32 = 32;
 /// Steps that are tried, finest first.
 const PREVIEW_STEPS: [u32; 5] = [2, 4, 8, 16, MAX_PREVIEW_STEP];
+/// A first full pass that takes longer than this, in seconds, is preceded by a finer look.
+const FINER_LOOK_FROM: f64 = 0.2;
 /// Aimed length of a pass in seconds: long enough that passes cost nothing, short enough that
 /// stop rules are kept.
 const PASS_AIM: f64 = 0.25;
@@ -22,6 +24,13 @@ pub(super) fn preview_step(pixels: f64, rate: f64) -> u32 {
         .into_iter()
         .find(|&step| pixels / f64::from(step * step) / rate.max(1.0) <= PREVIEW_BUDGET)
         .unwrap_or(MAX_PREVIEW_STEP)
+}
+
+/// The edge of the squares of a second, finer look after one of `shown`; `None` when the first full
+/// pass is about as quick or the look would be no finer.
+pub(super) fn finer_step(pixels: f64, rate: f64, shown: u32) -> Option<u32> {
+    let step = (shown / 4).max(2);
+    (step < shown && pixels / rate.max(1.0) > FINER_LOOK_FROM).then_some(step)
 }
 
 /// The number of samples per pixel at which the next pass ends.
@@ -93,6 +102,14 @@ mod tests {
         let step = preview_step(1_228_800.0, 600_000.0);
         assert!(1_228_800.0 / f64::from(step * step) / 600_000.0 <= PREVIEW_BUDGET);
         assert_eq!(preview_step(1e9, 1.0), MAX_PREVIEW_STEP);
+    }
+
+    #[test]
+    fn slow_first_passes_are_bridged_by_a_finer_look() {
+        assert_eq!(finer_step(1e6, 1e6, 16), Some(4));
+        assert_eq!(finer_step(1e6, 1e6, 4), Some(2));
+        assert_eq!(finer_step(1e6, 1e6, 2), None);
+        assert_eq!(finer_step(1e5, 1e6, 16), None);
     }
 
     #[test]

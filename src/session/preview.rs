@@ -51,14 +51,23 @@ impl Preview {
         ]
     }
 
-    /// One path for each square. Not cancellable: a preview that every new camera cancels is never
-    /// seen.
+    /// A whole picture, as a preview of one pixel a square.
+    pub(super) fn of_picture(width: usize, height: usize, pixels: Vec<Rgb>) -> Self {
+        Self {
+            width,
+            height,
+            step: 1,
+            pixels,
+        }
+    }
+
+    /// One path for each square; `None` when `stop` said so, asked before each chunk of paths.
     pub(super) fn render(
         workers: &Workers,
         tracer: &PathTracer<'_>,
-        size: [u32; 2],
-        step: u32,
-    ) -> (Self, PathCounts) {
+        (size, step): ([u32; 2], u32),
+        stop: &(dyn Fn() -> bool + Sync),
+    ) -> Option<Self> {
         let mut preview = Self::new(size, step);
         let ids: Vec<PathId> = (0..preview.pixels.len())
             .map(|index| PathId {
@@ -66,27 +75,16 @@ impl Preview {
                 sample: 0,
             })
             .collect();
-        let counts = workers.install(|| {
-            preview
+        let is_whole = workers.install(|| {
+            let chunks = preview
                 .pixels
                 .par_chunks_mut(CHUNK)
-                .zip(ids.par_chunks(CHUNK))
-                .map(|(out, ids)| {
-                    let mut counts = PathCounts::default();
-                    workers.with_arrays(|arrays| {
-                        arrays.ids.clear();
-                        arrays.ids.extend_from_slice(ids);
-                        arrays.trace(tracer, IntegratorKind::Wavefront, &mut counts);
-                        out.copy_from_slice(&arrays.radiance);
-                    });
-                    counts
-                })
-                .reduce(PathCounts::default, |mut a, b| {
-                    a += b;
-                    a
-                })
+                .zip(ids.par_chunks(CHUNK));
+            chunks
+                .map(|(out, ids)| !stop() && fill(workers, tracer, ids, out))
+                .all(|is_whole| is_whole)
         });
-        (preview, counts)
+        is_whole.then_some(preview)
     }
 
     /// The same for a view of the first hit.
@@ -114,4 +112,20 @@ impl Preview {
         });
         preview
     }
+}
+
+/// Traces one chunk; true.
+fn fill(workers: &Workers, tracer: &PathTracer<'_>, ids: &[PathId], out: &mut [Rgb]) -> bool {
+    workers.with_arrays(|arrays| {
+        arrays.ids.clear();
+        arrays.ids.extend_from_slice(ids);
+        // What a preview costs is no work of the picture.
+        arrays.trace(
+            tracer,
+            IntegratorKind::Wavefront,
+            &mut PathCounts::default(),
+        );
+        out.copy_from_slice(&arrays.radiance);
+    });
+    true
 }

@@ -1,7 +1,7 @@
 use std::time::Instant;
 
 use super::super::adaptive::close_pixels;
-use super::super::pace::{Progress, eta_seconds, next_target, preview_step};
+use super::super::pace::{Progress, eta_seconds, finer_step, next_target, preview_step};
 use super::super::preview::Preview;
 use super::super::publish::Caption;
 use super::super::workers::Workers;
@@ -93,7 +93,8 @@ impl Picture {
         }
     }
 
-    /// The coarse first look, and the paths per second that it measured.
+    /// The coarse first look, and the paths per second that it measured. Not cancellable: a first
+    /// look that every new camera cancels is never seen.
     pub(super) fn preview(
         &mut self,
         workers: &Workers,
@@ -107,28 +108,72 @@ impl Picture {
         let preview = if view.is_first_hit() {
             Preview::render_first_hit(workers, scene, &self.camera, view, (size, step))
         } else {
-            let settings = PathSettings {
-                light_samples: 1,
-                ..PathSettings::from(&self.job.settings)
-            };
-            Preview::render(
-                workers,
-                &PathTracer::new(scene, &self.camera, settings),
-                size,
-                step,
-            )
-            .0
+            self.coarse(workers, scene, step, &|| false)
+                .expect("nothing asks it to stop")
         };
         let measured = preview.pixels.len() as f64 / started.elapsed().as_secs_f64().max(1e-6);
-        let snapshot = self.caption().plain(
-            (preview.width, preview.height),
-            preview.pixels.clone(),
-            true,
-        );
-        if !view.is_first_hit() {
+        (self.show(preview), measured)
+    }
+
+    /// A finer look, where the first full pass takes so long that it is worth it; `None` when it is
+    /// not, or when `stop` said so.
+    pub(super) fn finer_preview(
+        &mut self,
+        workers: &Workers,
+        scene: &PreparedScene,
+        rate: f64,
+        stop: &(dyn Fn() -> bool + Sync),
+    ) -> Option<Snapshot> {
+        let size = self.size();
+        let shown = self.backdrop.as_ref().filter(|_| !self.has_samples())?.step;
+        let step = finer_step(f64::from(size[0]) * f64::from(size[1]), rate, shown)?;
+        let preview = self.coarse(workers, scene, step, stop)?;
+        Some(self.show(preview))
+    }
+
+    fn coarse(
+        &self,
+        workers: &Workers,
+        scene: &PreparedScene,
+        step: u32,
+        stop: &(dyn Fn() -> bool + Sync),
+    ) -> Option<Preview> {
+        let settings = PathSettings {
+            light_samples: 1,
+            ..PathSettings::from(&self.job.settings)
+        };
+        Preview::render(
+            workers,
+            &PathTracer::new(scene, &self.camera, settings),
+            (self.size(), step),
+            stop,
+        )
+    }
+
+    fn show(&mut self, preview: Preview) -> Snapshot {
+        let size = (preview.width, preview.height);
+        let snapshot = self.caption().plain(size, preview.pixels.clone(), true);
+        if !self.job.settings.view.is_first_hit() {
             self.backdrop = Some(preview);
         }
-        (snapshot, measured)
+        snapshot
+    }
+
+    /// True when this picture differs from one of `job` by its region only, so that `shown`, the
+    /// picture so far, is right outside of the new region.
+    pub(super) fn differs_by_region(&self, job: &RenderJob) -> bool {
+        let mut whole = job.clone();
+        whole.settings.region = self.job.settings.region;
+        whole == self.job && *job != self.job && !job.settings.view.is_first_hit()
+    }
+
+    /// Shows `snapshot` wherever there is no sample yet.
+    pub(super) fn keep(&mut self, snapshot: &Snapshot) {
+        self.backdrop = Some(Preview::of_picture(
+            snapshot.width,
+            snapshot.height,
+            snapshot.pixels.clone(),
+        ));
     }
 
     /// Why nothing more is to be done, if so.

@@ -154,14 +154,25 @@ impl<'a> Turn<'a> {
     fn start(&mut self, job: RenderJob) {
         let Some(scene) = &self.scene else { return };
         self.generation += 1;
+        let kept = self
+            .picture
+            .as_ref()
+            .filter(|picture| picture.differs_by_region(&job));
+        let kept = kept
+            .and_then(|_| self.shared.snapshot())
+            .filter(|snapshot| !snapshot.is_preview);
         let recycled = self.picture.take().map(Picture::into_film);
-        self.picture = Some(Picture::new(job, self.generation, scene, recycled));
+        let mut picture = Picture::new(job, self.generation, scene, recycled);
+        if let Some(snapshot) = &kept {
+            picture.keep(snapshot);
+        }
+        self.picture = Some(picture);
         self.has_news = false;
         self.shared.update_status(|status| {
             status.eta_seconds = None;
             status.relative_error = None;
         });
-        if self.shared.options.interactive {
+        if self.shared.options.interactive && kept.is_none() {
             self.show_preview();
         }
     }
@@ -179,9 +190,15 @@ impl<'a> Turn<'a> {
 
     fn prepare(&mut self, job: &RenderJob, seen: u64) -> ControlFlow<()> {
         let shared = self.shared;
+        // Another camera or size meanwhile does not make the work useless.
+        let is_wanted = || {
+            let wish = lock(&shared.wish);
+            let wanted = wish.job.as_ref();
+            !wish.quit && wanted.is_some_and(|wanted| Change::between(job, wanted) < Change::Scene)
+        };
         let progress = |stage, fraction| {
             shared.set_state(SessionState::Preparing { stage, fraction });
-            if shared.interrupts.load(Ordering::Relaxed) == seen {
+            if shared.interrupts.load(Ordering::Relaxed) == seen || is_wanted() {
                 ControlFlow::Continue(())
             } else {
                 ControlFlow::Break(())
@@ -223,6 +240,17 @@ impl<'a> Turn<'a> {
                 self.has_news = false;
             }
             return;
+        }
+        if shared.options.interactive {
+            let finer = picture.finer_preview(&self.workers, scene, self.rate, &is_interrupted);
+            if let Some(snapshot) = finer {
+                shared.publish(snapshot);
+                self.published = Instant::now();
+                return;
+            }
+            if is_interrupted() {
+                return;
+            }
         }
         let every = PUBLISH_EVERY[usize::from(shared.options.interactive)]
             .max(self.publish_cost * PUBLISH_SHARE);
