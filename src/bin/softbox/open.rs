@@ -1,4 +1,4 @@
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 use anyhow::anyhow;
@@ -43,10 +43,10 @@ pub(crate) fn open_path(path: &Path) -> Result<Loaded, Failure> {
 }
 
 /// Reads a picture of the surroundings.
-fn environment_map(path: &PathBuf) -> anyhow::Result<EnvironmentMap> {
+pub(crate) fn environment_map(path: &Path) -> anyhow::Result<EnvironmentMap> {
     let picture = read_environment(path)?;
     Ok(EnvironmentMap {
-        path: path.clone(),
+        path: path.to_owned(),
         image: Arc::new(picture.image),
     })
 }

@@ -1,7 +1,9 @@
 //! Rendering without a window.
 
+#[cfg(feature = "viewer")]
 use std::fs::File;
 use std::io::Write;
+#[cfg(feature = "viewer")]
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -30,9 +32,6 @@ const POLL: Duration = Duration::from_millis(100);
 /// Renders a job into its files.
 pub(crate) fn run(job: &Job, reporting: &Reporting) -> Result<(), Failure> {
     check_outputs(job)?;
-    if let Some(scene) = job.scene.as_ref().filter(|scene| scene.exists()) {
-        check_readable(scene)?;
-    }
     let messages = Messages { reporting };
     if reporting.verbose {
         messages.say(&command_line(job))?;
@@ -229,7 +228,8 @@ fn check_outputs(job: &Job) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Finds scene files that cannot be opened.
+/// Finds scene files that cannot be opened, before there is a window.
+#[cfg(feature = "viewer")]
 pub(crate) fn check_readable(scene: &Path) -> Result<(), Failure> {
     let is_folder = scene.is_dir();
     let opened = File::open(scene).map_err(anyhow::Error::from);
