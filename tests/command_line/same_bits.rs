@@ -43,21 +43,23 @@ fn threads_change_no_bit_and_seeds_do() {
 #[cfg(unix)]
 fn assert_reproduces(folder: &TempDir, name: &str) {
     let path = folder.path().join(name);
-    let picture = read_picture(&path).unwrap();
-    let command = picture.metadata.get(Metadata::COMMAND).unwrap();
+    let picture = read_picture(&path).expect("a picture");
+    let command = picture.metadata.get(Metadata::COMMAND).expect("a command");
     let first = bits(folder, name);
-    fs::remove_file(&path).unwrap();
-    let program = Path::new(env!("CARGO_BIN_EXE_softbox")).parent().unwrap();
+    fs::remove_file(&path).expect("own file");
+    let program = Path::new(env!("CARGO_BIN_EXE_softbox"))
+        .parent()
+        .expect("in a folder");
     let inherited = env::var_os("PATH").unwrap_or_default();
     let search = [program.to_owned()]
         .into_iter()
         .chain(env::split_paths(&inherited));
     let ended = Command::new("sh")
         .args(["-c", command])
-        .env("PATH", env::join_paths(search).unwrap())
+        .env("PATH", env::join_paths(search).expect("plain folders"))
         .current_dir(folder.path())
         .output()
-        .unwrap();
+        .expect("a shell");
     assert!(ended.status.success(), "{command}");
     assert!(first == bits(folder, name), "{command}");
 }
