@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, anyhow};
 use softbox::io::picture::{PictureFormat, check_writable, write_linear, write_png};
 use softbox::session::{RenderJob, RenderSession, SessionOptions, SessionStatus, Snapshot};
-use softbox::settings::{RenderSettings, View};
+use softbox::settings::{RenderSettings, StopRule, View};
 
 use crate::args::Reporting;
 use crate::command_line::command_line;
@@ -193,7 +193,7 @@ fn write_outputs(
         snapshot,
         &job.display,
         (&scene.name, scene.path.as_deref()),
-        &command_line(job),
+        &command_line(&repeatable(job, snapshot)),
     );
     for output in &job.outputs {
         let written = match PictureFormat::from_path(output) {
@@ -218,6 +218,19 @@ fn write_outputs(
         write_png(output, width, height, &bytes, &text).map_err(Status::Output.because())?;
     }
     Ok(())
+}
+
+/// The job that ends where this picture ended: after its samples, not after a time that depends on
+/// the machine, an estimate or Ctrl+C. Adaptive sampling has no such number and keeps its rule.
+fn repeatable(job: &Job, snapshot: &Snapshot) -> Job {
+    let mut job = job.clone();
+    if job.settings.adaptive.is_none() && !job.settings.view.is_first_hit() {
+        job.settings.stop = StopRule {
+            samples_per_pixel: Some(snapshot.samples_max),
+            ..StopRule::default()
+        };
+    }
+    job
 }
 
 /// Finds outputs that cannot be written before any time is spent on the picture.
