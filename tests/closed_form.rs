@@ -148,8 +148,8 @@ fn c2_point_light_in_a_sphere() {
 #[test]
 fn c3_emitting_cap_of_a_cavity() {
     // A cap of the polar angle with 1 − cos θ = 2 f covers the fraction f of the sphere.
-    let (f, rho, radiance) = (0.05, 0.8, 4.0);
-    let cap = (1.0 - 2.0 * f as f64).acos();
+    let (f, rho, radiance) = (0.05_f64, 0.8, 4.0);
+    let cap = (1.0 - 2.0 * f).acos();
     let mut builder = SceneBuilder::new("cavity");
     let wall = builder.diffuse("wall", Rgb::splat(rho as f32));
     let light = builder.emitter("light", Rgb::splat(radiance as f32));

@@ -130,7 +130,7 @@ impl Wavefront {
                 match tracer.direct_ray(path, vertex, number) {
                     None => counts.culled_shadow_rays += 1,
                     Some(DirectRay::Shadow { ray, contribution }) => {
-                        self.shadow.push(ray, contribution, owner)
+                        self.shadow.push(ray, contribution, owner);
                     }
                     Some(DirectRay::Gather { ray, factor }) => self.gather.push(ray, factor, owner),
                 }

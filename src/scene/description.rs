@@ -203,7 +203,7 @@ pub struct Environment {
     pub ambient: Rgb,
     /// Constant radiance of the whole sphere, seen by the camera too.
     pub sky: Rgb,
-    /// A picture of the whole sphere.
+    /// A picture of the whole sphere; it takes the place of `sky`.
     pub map: Option<EnvironmentMap>,
     /// True when softbox added `sky` because the scene had no light at all.
     pub is_added: bool,

@@ -1,6 +1,6 @@
 //! The light table of the runtime scene.
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 use super::emitters::EmittingRectangle;
 use super::{LightKind, LightNode, Scene};
@@ -103,8 +103,12 @@ pub(super) fn light_nodes(
     }
     let environment = &scene.environment;
     let map = environment.map.as_ref().map(|map| map.image.clone());
+    let sky = match map {
+        Some(_) => Vec3::ZERO,
+        None => environment.sky,
+    };
     if map.is_some() || (environment.ambient + environment.sky).max_element() > 0.0 {
-        let light = EnvironmentLight::new(environment.sky, environment.ambient, map);
+        let light = EnvironmentLight::new(sky, environment.ambient, map);
         table.environment = Some(table.add_sampled(Light::Environment(light)));
     }
 }

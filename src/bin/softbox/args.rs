@@ -76,7 +76,8 @@ struct PlainArgs {
 struct RenderArgs {
     /// The scene to render
     scene: PathBuf,
-    /// File to write: .png, .exr, .hdr or .pfm; may be repeated
+    /// File to write: .png, .exr, .hdr or .pfm; may be repeated. An existing file is replaced
+    /// only as a whole, at the end
     #[arg(short = 'o', long, value_name = "OUT", required = true)]
     output: Vec<PathBuf>,
     /// Also write the picture of the sampling rate

@@ -1,7 +1,9 @@
 //! Rendering without a window.
 
+#[cfg(feature = "viewer")]
 use std::fs::File;
 use std::io::Write;
+#[cfg(feature = "viewer")]
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -11,7 +13,7 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, anyhow};
 use softbox::io::picture::{PictureFormat, check_writable, write_linear, write_png};
 use softbox::session::{RenderJob, RenderSession, SessionOptions, SessionStatus, Snapshot};
-use softbox::settings::{RenderSettings, View};
+use softbox::settings::{RenderSettings, StopRule, View};
 
 use crate::args::Reporting;
 use crate::command_line::command_line;
@@ -30,9 +32,6 @@ const POLL: Duration = Duration::from_millis(100);
 /// Renders a job into its files.
 pub(crate) fn run(job: &Job, reporting: &Reporting) -> Result<(), Failure> {
     check_outputs(job)?;
-    if let Some(scene) = job.scene.as_ref().filter(|scene| scene.exists()) {
-        check_readable(scene)?;
-    }
     let messages = Messages { reporting };
     if reporting.verbose {
         messages.say(&command_line(job))?;
@@ -197,7 +196,7 @@ fn write_outputs(
         snapshot,
         &job.display,
         (&scene.name, scene.path.as_deref()),
-        &command_line(job),
+        &command_line(&repeatable(job, snapshot)),
     );
     for output in &job.outputs {
         let written = match PictureFormat::from_path(output) {
@@ -224,6 +223,19 @@ fn write_outputs(
     Ok(())
 }
 
+/// The job that ends where this picture ended: after its samples, not after a time that depends on
+/// the machine, an estimate or Ctrl+C. Adaptive sampling has no such number and keeps its rule.
+fn repeatable(job: &Job, snapshot: &Snapshot) -> Job {
+    let mut job = job.clone();
+    if job.settings.adaptive.is_none() && !job.settings.view.is_first_hit() {
+        job.settings.stop = StopRule {
+            samples_per_pixel: Some(snapshot.samples_max),
+            ..StopRule::default()
+        };
+    }
+    job
+}
+
 /// Finds outputs that cannot be written before any time is spent on the picture.
 fn check_outputs(job: &Job) -> Result<(), Failure> {
     for output in job.outputs.iter().chain(&job.rate_picture) {
@@ -232,7 +244,8 @@ fn check_outputs(job: &Job) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Finds scene files that cannot be opened.
+/// Finds scene files that cannot be opened, before there is a window.
+#[cfg(feature = "viewer")]
 pub(crate) fn check_readable(scene: &Path) -> Result<(), Failure> {
     let is_folder = scene.is_dir();
     let opened = File::open(scene).map_err(anyhow::Error::from);

@@ -235,7 +235,10 @@ impl Picture {
             self.summary = self.film.summary();
             self.last_pass = Some((target - self.done, std::mem::take(&mut self.pass_seconds)));
             self.done = target;
-            if let Some(adaptive) = settings.adaptive.filter(|a| target % a.batch.max(1) == 0) {
+            if let Some(adaptive) = settings
+                .adaptive
+                .filter(|a| target.is_multiple_of(a.batch.max(1)))
+            {
                 self.all_closed = close_pixels(&mut self.film, &adaptive, settings.mode);
             }
         }
