@@ -152,6 +152,10 @@ fn neighbours(block: usize) -> Vec<usize> {
         .collect()
 }
 
+#[expect(
+    clippy::print_stdout,
+    reason = "the means are worth reading in the slow tier"
+)]
 fn check(name: &'static str, mode: Mode, samples: u32) -> Vec<String> {
     let Some(reference) = reference(name) else {
         return Vec::new();

@@ -11,6 +11,7 @@ use softbox::io::load_scene;
 use softbox::scene::{PrepareSettings, PreparedScene, Scene, prepare};
 
 /// The folder of scenes and references beside the repository; `None`, with a message, without it.
+#[expect(clippy::print_stdout, reason = "says what was not there")]
 pub(crate) fn shared() -> Option<PathBuf> {
     let path: PathBuf = [env!("CARGO_MANIFEST_DIR"), "..", "shared"]
         .iter()
@@ -23,6 +24,7 @@ pub(crate) fn shared() -> Option<PathBuf> {
 }
 
 /// The scene in `file` of the shared folder; `None`, with a message, when it is not there.
+#[expect(clippy::print_stdout, reason = "says which scenes were not there")]
 pub(crate) fn load(file: &str) -> Option<Scene> {
     let path = shared()?.join(file);
     if !path.exists() {

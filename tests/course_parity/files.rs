@@ -47,10 +47,6 @@ fn mean(pixels: &[PixelStats], (columns, rows): Area) -> [f64; 3] {
 }
 
 fn compare(what: &str, found: f64, noted: f64) -> Option<String> {
-    println!(
-        "{what}: {found:.4}, noted {noted}, {:+.1} %",
-        100.0 * (found / noted - 1.0)
-    );
     let allowed = (TOLERANCE.0 * noted).max(TOLERANCE.1);
     ((found - noted).abs() > allowed).then(|| format!("{what}: {found}, should be {noted}"))
 }
@@ -95,9 +91,8 @@ fn check_scene(file: &str, scene: &Scene, course_compatible: bool, notes: &[Note
         let pixels = render(scene, note.depth, course_compatible);
         let name = format!("{file} depth {}", note.depth);
         let whole = mean(&pixels, WHOLE);
-        for c in 0..3 {
-            let what = format!("{name} channel {c}");
-            complaints.extend(compare(&what, whole[c], note.whole[c]));
+        for (c, (found, noted)) in whole.into_iter().zip(note.whole).enumerate() {
+            complaints.extend(compare(&format!("{name} channel {c}"), found, noted));
         }
         if let Some((back_wall, front_floor)) = note.places {
             for (place, area, noted) in [

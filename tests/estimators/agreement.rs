@@ -4,7 +4,7 @@ use softbox::integrator::PathSettings;
 use softbox::settings::{MaxDepth, Mode};
 
 use super::scenes::{self, View};
-use super::welch::{Picture, assert_same_picture};
+use super::welch::{Picture, assert_same_picture, mean_of};
 use crate::support::measure::{Estimate, blocks, measure, prepared, settings};
 
 const SIZE: (u32, u32) = (8, 8);
@@ -107,6 +107,22 @@ fn lone_rectangle() {
 #[test]
 fn mixed_lights() {
     check_depths(&scenes::mixed(&["area", "point", "map"]), SHORT);
+}
+
+/// Where uniform directions are good too, the modes must agree closely: a density that is wrong by
+/// two percent shows.
+#[test]
+fn wide_lights() {
+    let view = scenes::wide_lights();
+    let settings =
+        Mode::ALL.map(|mode| (mode.name().to_owned(), settings(mode, MaxDepth(1)), 30_000));
+    let pictures = pictures(&view, &settings);
+    for (name, blocks) in &pictures {
+        let whole = mean_of(blocks);
+        let precision = whole.standard_error(1) / whole.mean(1);
+        assert!(precision < 1.3e-3, "{name}: {precision}");
+    }
+    assert_same_picture(&view.0.name, &pictures);
 }
 
 #[test]

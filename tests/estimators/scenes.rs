@@ -248,6 +248,22 @@ pub(crate) fn lone_rectangle() -> View {
     two_spheres(builder, grey, grey)
 }
 
+/// A panel and a sphere so large that uniform directions find them about every third time.
+pub(crate) fn wide_lights() -> View {
+    let (mut builder, camera) = outdoors("wide lights");
+    let panel = builder.emitter("panel", Rgb::new(1.0, 0.9, 0.8));
+    builder.quad(
+        "panel",
+        DVec3::new(-3.0, 1.9, -3.0),
+        DVec3::X * 6.0,
+        DVec3::Z * 5.0,
+        panel,
+    );
+    let ball = builder.emitter("ball", Rgb::new(0.6, 0.8, 1.0));
+    builder.sphere("ball", DVec3::new(0.0, 1.2, 6.5), 2.0, ball);
+    (builder.finish(), camera)
+}
+
 /// Ceiling light, point light and map at once, each only if named in `keep`.
 pub(crate) fn mixed(keep: &[&str]) -> View {
     let mut builder = if keep.contains(&"area") {
