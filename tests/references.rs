@@ -15,6 +15,14 @@ use softbox::io::picture::read_exr;
 use softbox::scene::PreparedScene;
 use softbox::settings::{MaxDepth, Mode};
 
+const SCENES: [&str; 6] = [
+    "cb_empty",
+    "cb_spheres",
+    "glass_mirror",
+    "open_sky",
+    "cb_mesh70k",
+    "many_lights",
+];
 const SIZE: (u32, u32) = (480, 360);
 const BLOCK: usize = 8;
 const COLUMNS: usize = SIZE.0 as usize / BLOCK;
@@ -196,14 +204,7 @@ fn open_sky() {
 #[ignore = "minutes"]
 fn all_scenes_in_every_mode() {
     let mut complaints = Vec::new();
-    for name in [
-        "cb_empty",
-        "cb_spheres",
-        "glass_mirror",
-        "open_sky",
-        "cb_mesh70k",
-        "many_lights",
-    ] {
+    for name in SCENES {
         for mode in Mode::ALL {
             let samples = match (name, mode) {
                 // Hundreds of directions or lights at every vertex.
@@ -222,7 +223,7 @@ fn all_scenes_in_every_mode() {
 #[ignore = "minutes"]
 fn error_falls_as_one_over_samples() {
     let mut complaints = Vec::new();
-    for name in ["cb_empty", "cb_spheres", "cb_mesh70k", "open_sky"] {
+    for name in SCENES {
         let Some(reference) = reference(name) else {
             continue;
         };
