@@ -55,6 +55,27 @@ fn outputs_that_cannot_be_written_are_found_before_rendering() {
     assert_eq!(names(&folder), ["cornell-spheres.dae", "old.png"]);
 }
 
+#[test]
+fn a_camera_file_that_cannot_be_read_is_told_once() {
+    let folder = folder_with(&[SCENE]);
+    let output = softbox(
+        folder.path(),
+        &[&ENDLESS[..], &["-o", "a.png", "-c", "gone.txt"]].concat(),
+    );
+    assert_eq!(status(&output), Some(1));
+    let text = errors(&output);
+    assert!(
+        text.starts_with("softbox: Cannot read the camera file 'gone.txt'"),
+        "{text}"
+    );
+    assert_eq!(
+        (text.matches("os error").count(), text.lines().count()),
+        (1, 1),
+        "{text}"
+    );
+    assert_eq!(names(&folder), ["cornell-spheres.dae"]);
+}
+
 /// A second name of the old file still shows the old bytes, so the file was not written in place.
 #[test]
 fn an_existing_picture_is_replaced_as_a_whole() {

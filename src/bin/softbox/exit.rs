@@ -28,6 +28,22 @@ pub(crate) struct Failure {
     pub(crate) error: anyhow::Error,
 }
 
+impl Failure {
+    /// The error and its causes in one line. Many errors tell their cause themselves; it is not told
+    /// twice.
+    pub(crate) fn message(&self) -> String {
+        let mut text = String::new();
+        for cause in self.error.chain().map(ToString::to_string) {
+            if text.is_empty() {
+                text = cause;
+            } else if !text.contains(&cause) {
+                text = format!("{}: {cause}", text.trim_end_matches('.'));
+            }
+        }
+        text
+    }
+}
+
 impl Status {
     /// For `map_err`: the error with this status.
     pub(crate) fn because<E: Into<anyhow::Error>>(self) -> impl FnOnce(E) -> Failure {
@@ -35,5 +51,24 @@ impl Status {
             status: self,
             error: error.into(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use anyhow::anyhow;
+
+    #[test]
+    fn causes_are_told_once() {
+        let told = |error: anyhow::Error| Status::Failed.because()(error).message();
+        let cause = || anyhow!("disk full");
+        assert_eq!(told(cause()), "disk full");
+        assert_eq!(
+            told(cause().context("Cannot write.")),
+            "Cannot write: disk full"
+        );
+        let own = cause().context("Cannot write: disk full.");
+        assert_eq!(told(own), "Cannot write: disk full.");
     }
 }

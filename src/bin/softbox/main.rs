@@ -40,7 +40,7 @@ fn main() -> ExitCode {
         Err(failure) => {
             let mut stderr = std::io::stderr().lock();
             // Nobody is left to tell when this fails as well.
-            let _ = writeln!(stderr, "softbox: {:#}", failure.error);
+            let _ = writeln!(stderr, "softbox: {}", failure.message());
             failure.status.into()
         }
     }
