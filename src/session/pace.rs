@@ -36,8 +36,15 @@ pub(super) fn finer_step(pixels: f64, rate: f64, shown: u32) -> Option<u32> {
 /// The number of samples per pixel at which the next pass ends.
 ///
 /// `done` is what every open pixel has, `last` the samples and seconds of the last pass. Adaptive
-/// sampling must look at every multiple of its batch; nothing goes beyond the stop rule.
-pub(super) fn next_target(settings: &RenderSettings, done: u32, last: Option<(u32, f64)>) -> u32 {
+/// sampling must look at every multiple of its batch; nothing goes beyond the stop rule. With
+/// `seconds_left` until a time limit the pass is made to fit, so that it need not be cut: then all
+/// pixels end with the same number of samples, and the picture can be made again.
+pub(super) fn next_target(
+    settings: &RenderSettings,
+    done: u32,
+    last: Option<(u32, f64)>,
+    seconds_left: Option<f64>,
+) -> u32 {
     let step = match last {
         None => 1,
         Some((samples, seconds)) if seconds * 2.0 <= PASS_AIM => {
@@ -46,7 +53,10 @@ pub(super) fn next_target(settings: &RenderSettings, done: u32, last: Option<(u3
         Some((samples, seconds)) if seconds > PASS_AIM * 1.5 => (samples / 2).max(1),
         Some((samples, _)) => samples.max(1),
     };
-    let mut target = done.saturating_add(step);
+    let fitting = last.zip(seconds_left).map(|((samples, seconds), left)| {
+        (left / seconds.max(1e-6) * f64::from(samples)).max(1.0) as u32
+    });
+    let mut target = done.saturating_add(step.min(fitting.unwrap_or(u32::MAX)));
     if let Some(adaptive) = settings.adaptive {
         let batch = adaptive.batch.max(1);
         target = target.min((done / batch + 1).saturating_mul(batch));
@@ -121,17 +131,19 @@ mod tests {
             },
             ..RenderSettings::default()
         };
-        assert_eq!(next_target(&settings, 0, None), 1);
-        assert_eq!(next_target(&settings, 1, Some((1, 0.001))), 3);
-        assert_eq!(next_target(&settings, 8, Some((8, 1.0))), 12);
-        assert_eq!(next_target(&settings, 90, Some((64, 0.01))), 100);
+        assert_eq!(next_target(&settings, 0, None, None), 1);
+        assert_eq!(next_target(&settings, 1, Some((1, 0.001)), None), 3);
+        assert_eq!(next_target(&settings, 8, Some((8, 1.0)), None), 12);
+        assert_eq!(next_target(&settings, 90, Some((64, 0.01)), None), 100);
+        assert_eq!(next_target(&settings, 8, Some((8, 0.1)), Some(0.05)), 12);
+        assert_eq!(next_target(&settings, 8, Some((8, 0.1)), Some(0.0)), 9);
         settings.adaptive = Some(Adaptive {
             batch: 32,
             tolerance: 0.05,
             rule: AdaptiveRule::Course,
         });
-        assert_eq!(next_target(&settings, 30, Some((64, 0.01))), 32);
-        assert_eq!(next_target(&settings, 32, Some((64, 0.01))), 64);
+        assert_eq!(next_target(&settings, 30, Some((64, 0.01)), None), 32);
+        assert_eq!(next_target(&settings, 32, Some((64, 0.01)), None), 64);
     }
 
     #[test]

@@ -13,6 +13,9 @@ use crate::scene::PreparedScene;
 use crate::session::first_hit_pass::first_hit_pass;
 use crate::session::pass::{clear_pass, render_pass};
 
+/// How far a pass may go beyond the time limit: this share of it, and as many seconds.
+const GRACE: f64 = 0.1;
+
 /// One picture in the making: a job, its runtime scene, and the film so far.
 #[derive(Debug)]
 pub(super) struct Picture {
@@ -215,8 +218,10 @@ impl Picture {
         }
         let settings = &self.job.settings;
         let tracer = PathTracer::new(scene, &self.camera, PathSettings::from(settings));
-        let target = next_target(settings, self.done, self.last_pass);
-        let limit = settings.stop.seconds.map(|limit| limit - self.seconds);
+        let left = settings.stop.seconds.map(|limit| limit - self.seconds);
+        let target = next_target(settings, self.done, self.last_pass, left);
+        // The last pass was made to fit; one that takes much longer than foreseen is cut.
+        let limit = left.map(|left| left + GRACE * settings.stop.seconds.unwrap_or(0.0) + GRACE);
         let is_over =
             || stop() || limit.is_some_and(|limit| started.elapsed().as_secs_f64() >= limit);
         let (counts, is_complete) = render_pass(
