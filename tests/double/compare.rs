@@ -12,7 +12,8 @@ const WIDTH: u32 = 61;
 const HEIGHT: u32 = 47;
 
 /// The largest share of paths that rounding may send elsewhere. The rates found over half a million
-/// paths a case lie between 10⁻⁶ and 10⁻⁴, glass included.
+/// paths a case lie between 10⁻⁶ and 3 · 10⁻⁵, glass included; where a closed mesh glows they reach
+/// 10⁻⁴, because shadow rays in single precision miss blockers just before the light's silhouette.
 const FLIP_RATE: f64 = 2e-4;
 
 pub(crate) fn ray_camera(scene: &PreparedScene, camera: &Camera) -> RayCamera {
