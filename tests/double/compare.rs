@@ -89,6 +89,7 @@ impl Comparison {
 
     /// Few paths part; the others have the same mean up to 10⁻⁵, and all together up to the noise
     /// of those few.
+    #[expect(clippy::print_stdout, reason = "the rates are the result of the test")]
     pub(crate) fn check(&self, name: &str) {
         let off = self.single / self.double - 1.0;
         let mean = self.difference / self.samples;
