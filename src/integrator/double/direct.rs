@@ -11,7 +11,8 @@ use crate::integrator::direct::DirectSample;
 use crate::light::Light;
 use crate::sampling::Slot;
 
-/// Shadow rays end this share of the way to the light.
+/// Shadow rays end this share of the way to the light. In single precision they end earlier
+/// ([`crate::math::SHADOW_T_MAX`]) and miss what lies within 2⁻¹⁶ of the way before it.
 const SHADOW_END: f64 = 1.0 - 1e-12;
 
 /// The light that arrives at `vertex` straight from lights, times the throughput: the sum of the
