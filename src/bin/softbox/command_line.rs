@@ -4,7 +4,7 @@ use std::path::Path;
 
 use glam::DVec3;
 use softbox::display::{DisplaySettings, ToneCurve};
-use softbox::settings::{AdaptiveRule, RenderSettings};
+use softbox::settings::{AdaptiveRule, CameraRule, RenderSettings};
 
 use crate::job::{CameraChoice, FieldOfView, Job};
 use crate::values::name_of;
@@ -126,12 +126,12 @@ fn add_settings(line: &mut Line, settings: &RenderSettings) {
 fn add_camera(line: &mut Line, camera: &CameraChoice, course_compatible: bool) {
     let point = |p: DVec3| format!("{},{},{}", p.x, p.y, p.z);
     line.maybe("--camera", camera.file.as_deref().map(operand));
-    line.unless_default(
-        "--camera-rule",
-        camera.rule,
-        <_>::default(),
-        name_of(camera.rule),
-    );
+    let own = if course_compatible {
+        CameraRule::Course
+    } else {
+        CameraRule::Auto
+    };
+    line.unless_default("--camera-rule", camera.rule, own, name_of(camera.rule));
     line.maybe("--eye", camera.eye.map(point));
     line.maybe("--target", camera.target.map(point));
     line.maybe("--up", camera.up.map(point));

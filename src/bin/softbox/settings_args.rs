@@ -181,9 +181,14 @@ impl SettingsArgs {
             .xfov
             .map(FieldOfView::X)
             .or(given.yfov.map(FieldOfView::Y));
+        let own_rule = if self.course_compatible {
+            CameraRule::Course
+        } else {
+            CameraRule::Auto
+        };
         CameraChoice {
             file: given.file.clone(),
-            rule: given.rule.unwrap_or_default(),
+            rule: given.rule.unwrap_or(own_rule),
             eye: given.eye,
             target: given.target,
             up: given.up,
