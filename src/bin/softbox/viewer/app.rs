@@ -23,6 +23,7 @@ use super::options::ViewerOptions;
 use super::panels::{self, menu::Menu, status_bar::StatusBar};
 use super::preferences::Preferences;
 use super::probe::Probe;
+use super::ray_log::RayLog;
 use super::viewport::Viewport;
 use super::windows::Windows;
 
@@ -47,6 +48,7 @@ pub(super) struct ViewState {
     pub(super) viewport: Viewport,
     pub(super) navigation: Navigation,
     pub(super) bvh: BvhView,
+    pub(super) rays: RayLog,
     pixel: Option<PixelValues>,
     surface: Option<PickInfo>,
     title: String,
@@ -183,6 +185,10 @@ impl App {
         }
         let painter = ui.painter_at(shown.response.rect);
         view.bvh.paint(&painter, &document.camera, shown.letterbox);
+        if let Some(scene) = picker.scene() {
+            view.rays
+                .paint(&painter, scene, &document.camera, shown.letterbox);
+        }
         let pointer = shown.response.hover_pos();
         view.surface = pointer.and_then(|p| picker.pick(&document.camera, &shown.letterbox, p));
         view.pixel = pointer.and_then(|p| {

@@ -76,6 +76,8 @@ pub(super) enum Command {
     Cancel,
     /// The boxes of the BVH.
     ToggleBvh,
+    /// Show every 500th camera ray of this picture, or hide them.
+    ToggleRayLog,
     /// The parent of the selected box.
     BvhParent,
     /// The first child of the selected box.

@@ -42,6 +42,8 @@ pub(super) struct Document {
     pub(super) light_mode: Mode,
     history: History<Camera>,
     size: f64,
+    /// What was open before, to go back to when the build of a new scene is cancelled.
+    before: Option<(Arc<Scene>, Camera)>,
 }
 
 impl Document {
@@ -64,6 +66,7 @@ impl Document {
             light_mode: Mode::Best,
             history: History::new(camera),
             size,
+            before: None,
         }
     }
 
@@ -87,12 +90,25 @@ impl Document {
     /// Shows `scene` instead. `keeps_camera` for a new version of the same file.
     pub(super) fn replace_scene(&mut self, scene: Arc<Scene>, keeps_camera: bool) {
         self.size = scene_size(&scene);
-        self.scene = scene;
+        let old = std::mem::replace(&mut self.scene, scene);
+        self.before = Some((old, self.camera));
         if !keeps_camera {
             self.settings.region = None;
             self.reset_camera();
             self.history = History::new(self.camera);
         }
+    }
+
+    /// Back to the scene that was open before; false when there is none.
+    pub(super) fn return_to_scene_before(&mut self) -> bool {
+        let Some((scene, camera)) = self.before.take() else {
+            return false;
+        };
+        self.size = scene_size(&scene);
+        self.scene = scene;
+        self.camera = camera;
+        self.history = History::new(camera);
+        true
     }
 
     /// Back to the camera with which the scene was opened.

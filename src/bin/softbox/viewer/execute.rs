@@ -6,6 +6,7 @@ use std::sync::Arc;
 use eframe::egui::{Context, ViewportCommand};
 use softbox::color::Rgb;
 use softbox::scene::Scene;
+use softbox::session::SessionState;
 use softbox::settings::View;
 
 use super::app::App;
@@ -36,7 +37,9 @@ impl App {
             Command::AskPath => self.windows.ask_path(),
             Command::Reload => self.reload(),
             Command::CancelLoading => {
-                self.files.cancel_loading();
+                if !self.files.cancel_loading() {
+                    self.cancel_build();
+                }
             }
             Command::SaveSnapshot => self.save_snapshot(),
             Command::CopyImage => self.copy_image(ctx),
@@ -67,6 +70,7 @@ impl App {
             Command::ToggleRegion => self.toggle_region(ctx),
             Command::Cancel => self.cancel(ctx),
             Command::ToggleBvh => self.view.bvh.is_on = !self.view.bvh.is_on,
+            Command::ToggleRayLog => self.toggle_ray_log(ctx),
             Command::BvhParent => self.view.bvh.select_parent(),
             Command::BvhLeft => self.view.bvh.select_child(0),
             Command::BvhRight => self.view.bvh.select_child(1),
@@ -79,6 +83,17 @@ impl App {
                 ctx.send_viewport_cmd(ViewportCommand::Fullscreen(!is_full));
             }
             _ => {}
+        }
+    }
+
+    fn toggle_ray_log(&mut self, ctx: &Context) {
+        if self.view.rays.is_on() {
+            self.view.rays.clear();
+        } else if let Some(scene) = self.engine.prepared() {
+            let size = self.document.image_size();
+            self.view.rays.log(&scene, &self.document.camera, size);
+            let news = "Camera rays logged; move the camera to see them";
+            self.windows.messages.tell(news, ctx.time());
         }
     }
 
@@ -102,6 +117,7 @@ impl App {
         }
         if self.windows.close_one()
             || self.files.cancel_loading()
+            || self.cancel_build()
             || self.document.settings.region.take().is_some()
             || std::mem::take(&mut self.view.bvh.is_on)
         {
@@ -179,6 +195,18 @@ impl App {
         }
         let watched = path.as_deref().filter(|_| self.preferences.watches_files);
         self.files.watch(watched);
+    }
+
+    /// Goes back to the scene before while the new one is being made ready; false when nothing is.
+    fn cancel_build(&mut self) -> bool {
+        let is_building = matches!(self.engine.status().state, SessionState::Preparing { .. });
+        if !is_building || !self.document.return_to_scene_before() {
+            return false;
+        }
+        let path = self.document.scene.path.clone();
+        let watched = path.as_deref().filter(|_| self.preferences.watches_files);
+        self.files.watch(watched);
+        true
     }
 
     fn remove_added_light(&mut self) {

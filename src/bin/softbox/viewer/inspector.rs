@@ -44,6 +44,11 @@ impl Picker {
         Self { prepared }
     }
 
+    /// The scene that is searched.
+    pub(super) fn scene(&self) -> Option<&PreparedScene> {
+        self.prepared.as_deref()
+    }
+
     /// The first surface under a point of the screen, seen through the middle of the lens.
     pub(super) fn pick(
         &self,

@@ -170,6 +170,12 @@ fn view() -> Vec<Binding> {
         ),
         bind(
             Group::Bvh,
+            C::ToggleRayLog,
+            "Log the camera rays",
+            &[(NONE, Key::A)],
+        ),
+        bind(
+            Group::Bvh,
             C::BvhParent,
             "To the parent",
             &[(NONE, Key::ArrowUp)],

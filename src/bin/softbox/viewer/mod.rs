@@ -30,6 +30,7 @@ mod presenter;
 mod probe;
 mod projection;
 mod provenance;
+mod ray_log;
 mod shown;
 mod snapshot_file;
 #[cfg(test)]

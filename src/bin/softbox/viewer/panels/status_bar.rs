@@ -56,6 +56,12 @@ impl StatusBar<'_> {
     }
 
     fn show_pause(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
+        if matches!(self.status.state, SessionState::Preparing { .. }) {
+            if ui.button("Cancel").clicked() {
+                commands.push(Command::CancelLoading);
+            }
+            return;
+        }
         let is_paused = self.status.state == SessionState::Paused;
         let text = if is_paused { "Go on" } else { "Pause" };
         let is_possible = is_paused || self.status.state == SessionState::Rendering;

@@ -169,3 +169,25 @@ fn reading_can_be_cancelled_and_the_scene_stays() {
     harness.run_steps(20);
     assert!(Arc::ptr_eq(&scene, &harness.state().document.scene));
 }
+
+#[test]
+fn a_build_can_be_cancelled_and_the_picture_before_stays() {
+    let mut harness = viewer();
+    wait_for_picture(&mut harness);
+    let app = harness.state_mut();
+    let (scene, camera) = (Arc::clone(&app.document.scene), app.document.camera);
+    let rays = app.engine.status().counts.camera_rays;
+    let large = softbox::scene::procedural("knot-1m").expect("built in");
+    app.document.replace_scene(Arc::new(large), false);
+    wait(&mut harness, "the build", |app| {
+        matches!(app.engine.status().state, SessionState::Preparing { .. })
+    });
+    harness.step();
+    harness.get_by_label("Cancel").click();
+    harness.run_steps(2);
+    assert!(Arc::ptr_eq(&scene, &harness.state().document.scene));
+    assert_eq!(harness.state().document.camera, camera);
+    wait_for_picture(&mut harness);
+    let status = harness.state().engine.status();
+    assert_eq!(status.counts.camera_rays, rays, "no sample is taken again");
+}

@@ -155,3 +155,17 @@ fn no_two_commands_share_a_key() {
         assert!(has(Command::ResetCamera) && has(Command::TogglePause));
     }
 }
+
+#[test]
+fn a_logs_every_five_hundredth_camera_ray_and_hides_them() {
+    let mut harness = viewer();
+    wait_for_picture(&mut harness);
+    harness.key_press(Key::A);
+    harness.run_steps(2);
+    let (rays, hits) = harness.state().view.rays.counts();
+    assert_eq!(rays, (64 * 48_usize).div_ceil(500));
+    assert!(hits > 0, "the box fills most of the picture");
+    harness.key_press(Key::A);
+    harness.run_steps(2);
+    assert!(!harness.state().view.rays.is_on());
+}
