@@ -120,6 +120,8 @@ fn gathered(tracer: &PathTracer<'_>, ray: &Ray) -> DVec3 {
                 light::emitted(scene.light(index), surface.geometric_normal, ray.direction)
             })
         }
+        // The course's directions meet surfaces only.
+        None if scene.is_course_compatible() => DVec3::ZERO,
         None => match scene.environment_light().map(|index| scene.light(index)) {
             Some(Light::Environment(sky)) => environment::radiance(sky, ray.direction, false),
             _ => DVec3::ZERO,

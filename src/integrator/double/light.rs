@@ -4,7 +4,7 @@ use glam::{DVec3, Vec2};
 
 use super::{environment, sphere_light, warp};
 use crate::geometry::Shapes;
-use crate::light::{AreaDensity, AreaLight, AreaShape, Light, SpotLight};
+use crate::light::{AreaDensity, AreaLight, AreaShape, Light, PointFalloff, SpotLight};
 
 /// A direction in which a light is seen.
 #[derive(Clone, Copy, Debug)]
@@ -36,11 +36,18 @@ pub(super) fn sample(
         }
         Light::Point(point) => {
             let intensity = point.intensity.as_dvec3();
-            sample_point(from, point.position.as_dvec3(), |_| intensity)
+            sample_point(
+                from,
+                point.position.as_dvec3(),
+                |_, distance2| match point.falloff {
+                    PointFalloff::Correct => intensity / distance2,
+                    PointFalloff::Course => intensity,
+                },
+            )
         }
-        Light::Spot(spot) => {
-            sample_point(from, spot.position.as_dvec3(), |wi| intensity(spot, -wi))
-        }
+        Light::Spot(spot) => sample_point(from, spot.position.as_dvec3(), |wi, distance2| {
+            intensity(spot, -wi) / distance2
+        }),
         Light::Directional(directional) => Some(LightSample {
             wi: directional.to_light.as_dvec3().normalize(),
             radiance: directional.irradiance.as_dvec3(),
@@ -144,16 +151,17 @@ fn area_pdf(area: &AreaLight, distance: f64, cos_wi: f64) -> f64 {
     falloff / (f64::from(area.area()) * cos)
 }
 
+/// `irradiance` depends on the direction to the light and its squared distance.
 fn sample_point(
     from: DVec3,
     position: DVec3,
-    intensity_along: impl Fn(DVec3) -> DVec3,
+    irradiance: impl Fn(DVec3, f64) -> DVec3,
 ) -> Option<LightSample> {
     let to_light = position - from;
     let wi = to_light.try_normalize()?;
     Some(LightSample {
         wi,
-        radiance: intensity_along(wi) / to_light.length_squared(),
+        radiance: irradiance(wi, to_light.length_squared()),
         pdf: 1.0,
         is_delta: true,
         end: Some((position, DVec3::ZERO)),
