@@ -1,4 +1,4 @@
-use glam::{DVec2, DVec3, Vec2, Vec3};
+use glam::{DVec2, DVec3, Vec2};
 
 use super::Camera;
 use crate::math::{Normalization, Ray};
@@ -63,11 +63,6 @@ impl RayCamera {
         let in_focus = self.eye + direction * self.focal_distance;
         (origin, unit(in_focus - origin))
     }
-
-    /// The view direction.
-    pub fn forward(&self) -> Vec3 {
-        self.forward.as_vec3()
-    }
 }
 
 fn unit(direction: DVec3) -> DVec3 {
@@ -78,6 +73,7 @@ fn unit(direction: DVec3) -> DVec3 {
 mod tests {
     use super::*;
     use crate::camera::Framing;
+    use glam::Vec3;
 
     fn camera(lens_radius: f64) -> RayCamera {
         let camera = Camera {

@@ -162,8 +162,8 @@ impl Picture {
         snapshot
     }
 
-    /// True when this picture differs from one of `job` by its region only, so that `shown`, the
-    /// picture so far, is right outside of the new region.
+    /// True when this picture differs from one of `job` by its region only, so that what is shown
+    /// of it is right outside of the new region.
     pub(super) fn differs_by_region(&self, job: &RenderJob) -> bool {
         let mut whole = job.clone();
         whole.settings.region = self.job.settings.region;
