@@ -2,16 +2,14 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Instant;
 
-use super::node::{Child, Pair};
+use super::collapse::collapse;
+use super::pair::{BinaryNode, Pair};
 use super::range::{Extents, PrimitiveRef, split_at_median};
 use super::sah::BinnedSplit;
 use super::slab::padded;
-use super::tree::Bvh;
+use super::tree::{Bvh, LeafBlocks};
 use super::{BvhKind, BvhSettings};
 use crate::math::Aabb;
-
-/// No node lies deeper than this (the root has depth 0).
-pub(super) const MAX_DEPTH: usize = HALVING_DEPTH + u32::BITS as usize;
 
 /// Below this depth ranges are halved, whatever the heuristic says.
 const HALVING_DEPTH: usize = 60;
@@ -25,8 +23,8 @@ const SERIAL: usize = 4096;
 pub(super) const NODE_COST: f32 = 2.0;
 
 impl Bvh {
-    /// Builds the tree over `boxes`. Boxes that are empty or not finite stay outside.
-    pub fn build(boxes: &[Aabb], settings: &BvhSettings) -> Self {
+    /// Builds the tree over `boxes`, and what its leaves hold. Boxes that are empty or not finite stay outside.
+    pub fn build(boxes: &[Aabb], settings: &BvhSettings) -> (Self, LeafBlocks) {
         Self::build_with(boxes, settings, &|_| ControlFlow::Continue(()))
             .expect("nothing asks this build to stop")
     }
@@ -42,7 +40,7 @@ impl Bvh {
         boxes: &[Aabb],
         settings: &BvhSettings,
         progress: &(dyn Fn(f32) -> ControlFlow<()> + Sync),
-    ) -> Option<Self> {
+    ) -> Option<(Self, LeafBlocks)> {
         assert!(boxes.len() < 1 << 31, "too many primitives");
         let start = Instant::now();
         let usable = |b: &Aabb| !b.is_empty() && b.min.is_finite() && b.max.is_finite();
@@ -62,15 +60,16 @@ impl Bvh {
             progress,
         };
         builder.report(0)?;
-        let mut pairs = vec![Pair::new(Child::NOWHERE, Child::NOWHERE)];
+        let mut pairs = vec![Pair::new(BinaryNode::NOWHERE, BinaryNode::NOWHERE)];
         if !refs.is_empty() {
             let root = builder.parallel(&mut refs, 0, 0)?.flatten(&mut pairs);
-            pairs[0] = Pair::new(root, Child::NOWHERE);
+            pairs[0] = Pair::new(root, BinaryNode::NOWHERE);
         }
-        pairs.shrink_to_fit();
         let order: Vec<_> = refs.iter().map(|r| r.id).collect();
+        let (nodes, blocks) = collapse(&pairs, &order);
         let excluded = boxes.len() - order.len();
-        Some(Self::from_parts(pairs, order, excluded, start))
+        let bvh = Self::new(nodes, blocks.len(), excluded, start.elapsed());
+        Some((bvh, blocks))
     }
 }
 
@@ -85,7 +84,7 @@ struct Builder<'a> {
 /// A subtree as a parallel build leaves it.
 enum Part {
     /// Built by one thread; the pair indices count from the start of `pairs`.
-    Chunk { root: Child, pairs: Vec<Pair> },
+    Chunk { root: BinaryNode, pairs: Vec<Pair> },
     /// Two subtrees.
     Inner {
         bounds: Aabb,
@@ -95,7 +94,7 @@ enum Part {
 
 impl Part {
     /// Appends the pairs of this subtree in depth-first order; returns its root.
-    fn flatten(self, out: &mut Vec<Pair>) -> Child {
+    fn flatten(self, out: &mut Vec<Pair>) -> BinaryNode {
         let first = u32::try_from(out.len()).expect("fewer pairs than primitives");
         match self {
             Self::Chunk { mut root, pairs } => {
@@ -106,10 +105,10 @@ impl Part {
                 root
             }
             Self::Inner { bounds, children } => {
-                out.push(Pair::new(Child::NOWHERE, Child::NOWHERE));
+                out.push(Pair::new(BinaryNode::NOWHERE, BinaryNode::NOWHERE));
                 let [left, right] = children.map(|part| part.flatten(out));
                 out[first as usize] = Pair::new(left, right);
-                Child {
+                BinaryNode {
                     bounds,
                     first,
                     count: 0,
@@ -166,18 +165,18 @@ impl Builder<'_> {
         first: usize,
         depth: usize,
         pairs: &mut Vec<Pair>,
-    ) -> Child {
+    ) -> BinaryNode {
         let extents = Extents::of(refs);
         let Some(mid) = self.split(refs, &extents, depth) else {
             return leaf(extents.bounds, first, refs.len());
         };
         let index = pairs.len();
-        pairs.push(Pair::new(Child::NOWHERE, Child::NOWHERE));
+        pairs.push(Pair::new(BinaryNode::NOWHERE, BinaryNode::NOWHERE));
         let (left, right) = refs.split_at_mut(mid);
         let left = self.serial(left, first, depth + 1, pairs);
         let right = self.serial(right, first + mid, depth + 1, pairs);
         pairs[index] = Pair::new(left, right);
-        Child {
+        BinaryNode {
             bounds: extents.bounds,
             first: index as u32,
             count: 0,
@@ -210,8 +209,8 @@ impl Builder<'_> {
     }
 }
 
-fn leaf(bounds: Aabb, first: usize, count: usize) -> Child {
-    Child {
+fn leaf(bounds: Aabb, first: usize, count: usize) -> BinaryNode {
+    BinaryNode {
         bounds,
         first: first as u32,
         count: count as u32,

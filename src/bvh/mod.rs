@@ -9,18 +9,26 @@
 //! ([`SlabRay::enter`]), gets the same answer from every tree, bit for bit.
 
 mod build;
+mod collapse;
+mod leaves;
 mod node;
+mod octant;
+mod pair;
 mod range;
 mod sah;
 mod settings;
+mod simd;
+mod single;
 mod slab;
+mod stack;
 mod stats;
+mod stream;
 mod traverse;
 mod tree;
-mod wide;
 
+pub use leaves::{Leaves, Work};
 pub use settings::{BvhKind, BvhSettings};
+pub use simd::prefetch;
 pub use slab::{SlabRay, T_FAR, padded};
 pub use stats::BvhStats;
-pub use traverse::{Leaf, Stack, Work};
-pub use tree::{Bvh, NodeId};
+pub use tree::{BLOCK, Bvh, LeafBlocks, NO_PRIMITIVE, NodeId};

@@ -1,6 +1,5 @@
-use glam::{Vec3, Vec4};
+use glam::Vec3;
 
-use super::wide::Wide;
 use crate::math::{Aabb, Ray, gamma};
 
 /// Nothing at or beyond this ray parameter is ever reported.
@@ -19,7 +18,7 @@ const PAD: f32 = gamma(16);
 /// Factor on the far end of the interval: the primitive's own test may be off by a few roundings of
 /// numbers as large as its distance too. Ize 2013, "Robust BVH Ray Traversal", derives 1 + 2γ(3)
 /// for the roundings of the box test alone.
-const FAR_MARGIN: f32 = 1.0 + 2.0 * gamma(8);
+pub(super) const FAR_MARGIN: f32 = 1.0 + 2.0 * gamma(8);
 
 /// The box that stands for `bounds` in the tree: slightly larger on every side, never flat.
 pub fn padded(bounds: Aabb) -> Aabb {
@@ -41,11 +40,11 @@ pub fn padded(bounds: Aabb) -> Aabb {
 /// A ray prepared for box tests.
 #[derive(Clone, Copy, Debug)]
 pub struct SlabRay {
-    origin: Vec3,
-    inverse: Vec3,
+    pub(super) origin: Vec3,
+    pub(super) inverse: Vec3,
     /// Whether the direction points down the axis.
-    negative: [bool; 3],
-    t_min: f32,
+    pub(super) negative: [bool; 3],
+    pub(super) t_min: f32,
     t_max: f32,
 }
 
@@ -80,6 +79,12 @@ impl SlabRay {
         self.t_max
     }
 
+    /// A bit for each axis on which the direction points down.
+    pub(super) fn octant(&self) -> usize {
+        let [x, y, z] = self.negative.map(usize::from);
+        x | y << 1 | z << 2
+    }
+
     /// The ray parameter at which the ray enters `bounds` (at least `t_min`), `None` if it misses.
     pub fn enter(&self, bounds: &Aabb) -> Option<f32> {
         let lo = (bounds.min - self.origin) * self.inverse;
@@ -87,24 +92,5 @@ impl SlabRay {
         let near = lo.min(hi).max_element().max(self.t_min);
         let far = lo.max(hi).min_element().min(self.t_max);
         (near <= far * FAR_MARGIN).then_some(near)
-    }
-
-    /// Entry parameters of the boxes of a node, and a bit for each that the ray meets before
-    /// `limit`.
-    ///
-    /// The same operations as [`Self::enter`], hence the same numbers: of two planes of a box, the
-    /// one that the direction meets first has the smaller parameter, in floating point too.
-    #[inline(always)]
-    pub(super) fn enter_four(&self, node: &Wide, limit: f32) -> (Vec4, u32) {
-        let t = |axis: usize, side: bool| {
-            (node.planes[axis][usize::from(side)] - Vec4::splat(self.origin[axis]))
-                * Vec4::splat(self.inverse[axis])
-        };
-        let [x, y, z] = self.negative;
-        let near = t(0, x)
-            .max(t(1, y))
-            .max(t(2, z).max(Vec4::splat(self.t_min)));
-        let far = t(0, !x).min(t(1, !y)).min(t(2, !z).min(Vec4::splat(limit)));
-        (near, near.cmple(far * FAR_MARGIN).bitmask())
     }
 }

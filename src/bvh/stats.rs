@@ -39,7 +39,7 @@ impl Bvh {
     pub fn stats(&self) -> BvhStats {
         let mut stats = BvhStats {
             nodes: self.node_count(),
-            primitives: self.order().len(),
+            primitives: self.primitive_count(),
             excluded: self.excluded(),
             bytes: self.bytes(),
             build_seconds: self.build_time().as_secs_f64(),
@@ -57,7 +57,7 @@ impl Bvh {
                 cost += area * f64::from(NODE_COST);
                 open.extend(children.map(|c| (c, depth + 1)));
             } else {
-                let size = self.slots(node).len();
+                let size = self.primitives_below(node);
                 cost += area * size as f64;
                 depth_sum += depth;
                 stats.leaves += 1;

@@ -1,18 +1,19 @@
 use std::ops::ControlFlow;
 
-use super::leaf::{LeafOrder, Search, boxes};
+use super::block::{Block, ID_LIMIT};
+use super::leaf::{LeafOrder, boxes};
 use super::{Hit, Shapes};
-use crate::bvh::{Bvh, BvhSettings, BvhStats, SlabRay, Stack};
-use crate::math::Ray;
+use crate::bvh::{BLOCK, Bvh, BvhSettings, BvhStats, NodeId};
+use crate::math::{Isa, Ray};
 
 /// Work done by traversal.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TraceCounts {
     /// Rays traced.
     pub rays: u64,
-    /// Boxes tested.
+    /// Boxes tested; a node counts all its eight, whether or not it is full.
     pub box_tests: u64,
-    /// Primitives tested.
+    /// Primitives tested; a block counts four, whether or not it is full.
     pub primitive_tests: u64,
 }
 
@@ -27,6 +28,7 @@ pub struct Aggregate {
     shapes: Shapes,
     bvh: Bvh,
     leaves: LeafOrder,
+    isa: Isa,
 }
 
 impl Aggregate {
@@ -43,13 +45,30 @@ impl Aggregate {
         settings: BvhSettings,
         progress: &(dyn Fn(f32) -> ControlFlow<()> + Sync),
     ) -> Option<Self> {
-        let bvh = Bvh::build_with(&boxes(&shapes), &settings, progress)?;
-        let leaves = LeafOrder::new(&shapes, bvh.order());
+        assert!(shapes.len() < ID_LIMIT as usize, "too many primitives");
+        let (bvh, ids) = Bvh::build_with(&boxes(&shapes), &settings, progress)?;
+        let leaves = LeafOrder::new(&shapes, &bvh, &ids);
         Some(Self {
             shapes,
             bvh,
             leaves,
+            isa: Isa::best(),
         })
+    }
+
+    /// The same, traced with `isa`.
+    ///
+    /// # Panics
+    /// When tracing, if this processor does not have it.
+    #[must_use]
+    pub fn with_isa(self, isa: Isa) -> Self {
+        Self { isa, ..self }
+    }
+
+    /// Ids of all primitives below a node of [`Self::bvh`].
+    pub fn primitives(&self, node: NodeId) -> impl Iterator<Item = u32> + '_ {
+        let blocks = &self.leaves.blocks()[self.bvh.blocks(node)];
+        blocks.iter().flat_map(Block::ids)
     }
 
     /// The shapes.
@@ -75,7 +94,7 @@ impl Aggregate {
     /// When the slices differ in length.
     pub fn closest_hit(&self, rays: &[Ray], hits: &mut [Hit], counts: &mut TraceCounts) {
         assert_eq!(rays.len(), hits.len());
-        self.trace::<false, _>(rays, hits, counts, |hit| hit);
+        self.trace::<false>(rays, counts, |i, hit| hits[i] = hit);
     }
 
     /// Writes for each ray whether anything lies on it.
@@ -84,7 +103,7 @@ impl Aggregate {
     /// When the slices differ in length.
     pub fn any_hit(&self, rays: &[Ray], occluded: &mut [bool], counts: &mut TraceCounts) {
         assert_eq!(rays.len(), occluded.len());
-        self.trace::<true, _>(rays, occluded, counts, |hit| !hit.is_miss());
+        self.trace::<true>(rays, counts, |i, hit| occluded[i] = !hit.is_miss());
     }
 
     /// The closest hit of one ray.
@@ -94,25 +113,18 @@ impl Aggregate {
         hits[0]
     }
 
-    fn trace<const ANY: bool, T>(
+    fn trace<const ANY: bool>(
         &self,
         rays: &[Ray],
-        out: &mut [T],
         counts: &mut TraceCounts,
-        answer: impl Fn(Hit) -> T,
+        mut answer: impl FnMut(usize, Hit),
     ) {
-        let mut stack = Stack::new();
-        for (ray, out) in rays.iter().zip(out) {
-            let mut hit = Hit::MISS;
-            if let Some(slab) = SlabRay::new(ray) {
-                let mut search = Search::<ANY>::new(&self.leaves, ray, &slab);
-                let work = self.bvh.traverse(&slab, &mut stack, &mut search);
-                counts.box_tests += u64::from(work.boxes);
-                counts.primitive_tests += u64::from(work.primitives);
-                hit = search.hit;
-            }
-            *out = answer(hit);
-        }
+        let (isa, leaves) = (self.isa, &self.leaves);
+        let work = self.bvh.traverse::<ANY, _>(isa, leaves, rays, |i, query| {
+            answer(i, query.map_or(Hit::MISS, |query| query.hit));
+        });
         counts.rays += rays.len() as u64;
+        counts.box_tests += work.nodes * 8;
+        counts.primitive_tests += work.blocks * BLOCK as u64;
     }
 }

@@ -1,44 +1,43 @@
-use std::ops::Range;
-
 use glam::Vec3;
 
+use super::block::Block;
 use super::triangle::{self, Shear};
 use super::{Hit, Shapes, Sphere};
-use crate::bvh::{Leaf, SlabRay, padded};
+use crate::bvh::{BLOCK, Bvh, LeafBlocks, Leaves, NodeId, SlabRay, padded, prefetch};
 use crate::math::{Aabb, Ray};
 
 /// The primitives in the order of the leaves, with their vertices at hand.
 #[derive(Clone, Debug)]
 pub(super) struct LeafOrder {
-    ids: Vec<u32>,
-    /// Vertices of a triangle; nothing useful for a sphere.
-    vertices: Vec<[Vec3; 3]>,
+    blocks: Vec<Block>,
     /// Ids from here on are spheres.
     first_sphere: u32,
     spheres: Vec<Sphere>,
 }
 
 impl LeafOrder {
-    pub(super) fn new(shapes: &Shapes, order: &[u32]) -> Self {
-        let triangles = shapes.triangles.len();
-        let vertices = order.iter().map(|&id| {
-            let id = id as usize;
-            if id < triangles {
-                shapes.vertices(id)
-            } else {
-                [Vec3::ZERO; 3]
-            }
-        });
+    pub(super) fn new(shapes: &Shapes, bvh: &Bvh, ids: &LeafBlocks) -> Self {
+        let mut more = vec![false; ids.len()];
+        if let Some(root) = bvh.root() {
+            mark_more(bvh, root, &mut more);
+        }
+        let blocks = ids.iter().zip(more);
         Self {
-            ids: order.to_vec(),
-            vertices: vertices.collect(),
-            first_sphere: u32::try_from(triangles).expect("the build checked the number"),
+            blocks: blocks
+                .map(|(ids, more)| Block::new(shapes, ids, more))
+                .collect(),
+            first_sphere: u32::try_from(shapes.triangles.len())
+                .expect("the build checked the number"),
             spheres: shapes.spheres.clone(),
         }
     }
 
+    pub(super) fn blocks(&self) -> &[Block] {
+        &self.blocks
+    }
+
     pub(super) fn bytes(&self) -> usize {
-        size_of_val(self.ids.as_slice()) + size_of_val(self.vertices.as_slice())
+        size_of_val(self.blocks.as_slice())
     }
 }
 
@@ -50,92 +49,159 @@ pub(super) fn boxes(shapes: &Shapes) -> Vec<Aabb> {
         .collect()
 }
 
-/// One ray among the leaves. `ANY`: stop at the first hit.
-#[derive(Debug)]
-pub(super) struct Search<'a, const ANY: bool> {
-    leaves: &'a LeafOrder,
-    ray: &'a Ray,
-    slab: &'a SlabRay,
+/// A ray among the primitives.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Query {
     shear: Shear,
+    direction: Vec3,
     /// The best hit so far.
     pub(super) hit: Hit,
 }
 
-impl<'a, const ANY: bool> Search<'a, ANY> {
-    pub(super) fn new(leaves: &'a LeafOrder, ray: &'a Ray, slab: &'a SlabRay) -> Self {
-        Self {
-            leaves,
-            ray,
-            slab,
-            shear: Shear::new(ray),
-            hit: Hit::MISS,
-        }
-    }
-
+impl Query {
     /// Takes a hit if it is valid and better than the best so far.
     ///
     /// Every test depends on the primitive and the ray alone, so the result depends neither on the
     /// tree nor on the order of visits: the hit counts only if the ray meets the primitive's own
     /// box, and lies no nearer than that box.
-    fn offer(&mut self, t: f32, id: u32, weights: (f32, f32), bounds: impl FnOnce() -> Aabb) {
+    #[inline]
+    fn offer(&mut self, slab: &SlabRay, hit: Hit, bounds: &Aabb) {
         // Moving to the front of the box only ever enlarges t, and must not carry it past t_min.
         // A t that is NaN, from numbers too large for f32, fails here too.
-        let possible = t > self.slab.t_min() && t < self.slab.t_max() && t <= self.hit.t;
+        let possible = hit.t > slab.t_min() && hit.t < slab.t_max() && hit.t <= self.hit.t;
         if !possible {
             return;
         }
-        let Some(front) = self.slab.enter(&padded(bounds())) else {
+        let Some(front) = slab.enter(&padded(*bounds)) else {
             return;
         };
-        let t = t.max(front);
-        let better = t < self.hit.t || t == self.hit.t && id < self.hit.primitive;
-        if t < self.slab.t_max() && better {
-            self.hit = Hit {
-                t,
-                primitive: id,
-                b1: weights.0,
-                b2: weights.1,
-            };
-        }
-    }
-
-    #[inline(always)]
-    fn triangles<const Z: usize>(&mut self, slots: Range<usize>) {
-        let leaves = self.leaves;
-        for (vertices, &id) in leaves.vertices[slots.clone()]
-            .iter()
-            .zip(&leaves.ids[slots])
-        {
-            if id >= leaves.first_sphere {
-                self.sphere(id);
-            } else if let Some(hit) = self.shear.meet::<Z>(vertices) {
-                let bounds = || Aabb::from_points(*vertices);
-                self.offer(hit.t, id, (hit.b1, hit.b2), bounds);
-            }
+        let t = hit.t.max(front);
+        let better = t < self.hit.t || t == self.hit.t && hit.primitive < self.hit.primitive;
+        if t < slab.t_max() && better {
+            self.hit = Hit { t, ..hit };
         }
     }
 
     #[cold]
-    fn sphere(&mut self, id: u32) {
-        let sphere = self.leaves.spheres[(id - self.leaves.first_sphere) as usize];
-        for t in sphere.meet(self.ray).into_iter().flatten() {
-            self.offer(t, id, (0.0, 0.0), || sphere.bounds());
+    fn spheres(&mut self, leaves: &LeafOrder, slab: &SlabRay, block: &Block) {
+        let ray = Ray::new(self.shear.origin, self.direction);
+        for primitive in block.ids().filter(|&id| id >= leaves.first_sphere) {
+            let sphere = leaves.spheres[(primitive - leaves.first_sphere) as usize];
+            for t in sphere.meet(&ray).into_iter().flatten() {
+                let hit = Hit {
+                    t,
+                    primitive,
+                    b1: 0.0,
+                    b2: 0.0,
+                };
+                self.offer(slab, hit, &sphere.bounds());
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn triangles(&mut self, slab: &SlabRay, block: &Block) {
+        let edges = self.shear.edges(block);
+        let mut inside = edges.inside();
+        let on_edge = edges.on_edge();
+        if on_edge != 0 {
+            inside &= !on_edge;
+            self.triangles_on_edges(slab, block, on_edge);
+        }
+        if inside == 0 {
+            return;
+        }
+        let (t, b1, b2) = self.shear.hits(&edges);
+        let (t, b1, b2) = (t.to_array(), b1.to_array(), b2.to_array());
+        while inside != 0 {
+            let lane = inside.trailing_zeros() as usize % BLOCK;
+            inside &= inside - 1;
+            if t[lane] > slab.t_min() && t[lane] < slab.t_max() && t[lane] <= self.hit.t {
+                let hit = Hit {
+                    t: t[lane],
+                    primitive: block.id(lane),
+                    b1: b1[lane],
+                    b2: b2[lane],
+                };
+                let bounds = Aabb::from_points(block.vertices(lane));
+                self.offer(slab, hit, &bounds);
+            }
+        }
+    }
+
+    /// The triangles in `lanes`, one at a time with exact edge functions.
+    #[cold]
+    fn triangles_on_edges(&mut self, slab: &SlabRay, block: &Block, lanes: u32) {
+        for lane in (0..BLOCK).filter(|lane| lanes >> lane & 1 == 1) {
+            let vertices = block.vertices(lane);
+            if let Some(hit) = self.shear.meet(&vertices) {
+                let hit = Hit {
+                    t: hit.t,
+                    primitive: block.id(lane),
+                    b1: hit.b1,
+                    b2: hit.b2,
+                };
+                self.offer(slab, hit, &Aabb::from_points(vertices));
+            }
         }
     }
 }
 
-impl<const ANY: bool> Leaf for Search<'_, ANY> {
-    #[inline]
-    fn visit(&mut self, slots: Range<usize>) -> f32 {
-        match self.shear.axis {
-            0 => self.triangles::<0>(slots),
-            1 => self.triangles::<1>(slots),
-            _ => self.triangles::<2>(slots),
+impl Leaves for LeafOrder {
+    type Query = Query;
+
+    #[inline(always)]
+    fn query(&self, ray: &Ray, _: &SlabRay) -> Query {
+        Query {
+            shear: Shear::new(ray),
+            direction: ray.direction,
+            hit: Hit::MISS,
         }
-        if ANY && !self.hit.is_miss() {
-            f32::NEG_INFINITY
-        } else {
-            self.hit.t.min(self.slab.t_max())
+    }
+
+    #[inline(always)]
+    fn visit<const ANY: bool>(
+        &self,
+        first: u32,
+        slab: &SlabRay,
+        query: &mut Query,
+        blocks: &mut u64,
+    ) -> f32 {
+        for block in &self.blocks[first as usize..] {
+            *blocks += 1;
+            query.triangles(slab, block);
+            if !block.is_plain() && block.has_spheres() {
+                query.spheres(self, slab, block);
+            }
+            if ANY && !query.hit.is_miss() {
+                return f32::NEG_INFINITY;
+            }
+            if block.is_plain() || !block.has_more() {
+                break;
+            }
+        }
+        query.hit.t.min(slab.t_max())
+    }
+
+    #[inline(always)]
+    fn prefetch(&self, block: u32) {
+        if let Some(block) = self.blocks.get(block as usize) {
+            prefetch(block);
+        }
+    }
+}
+
+/// Sets `more` for all blocks of each leaf below `node` but the last.
+fn mark_more(bvh: &Bvh, node: NodeId, more: &mut [bool]) {
+    let mut open = vec![node];
+    while let Some(node) = open.pop() {
+        match bvh.children(node) {
+            Some(children) => open.extend(children),
+            None => more[bvh.blocks(node)]
+                .split_last_mut()
+                .expect("a leaf has blocks")
+                .1
+                .fill(true),
         }
     }
 }

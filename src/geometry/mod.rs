@@ -2,6 +2,7 @@
 //! under a BVH with the batch tracing interface.
 
 mod aggregate;
+mod block;
 mod hit;
 mod leaf;
 mod mesh;

@@ -1,5 +1,6 @@
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec3, Vec4};
 
+use super::block::Block;
 use crate::math::{Aabb, Ray, gamma};
 
 /// A ray prepared for triangle tests: sheared so that it runs along one axis.
@@ -7,9 +8,9 @@ use crate::math::{Aabb, Ray, gamma};
 /// Woop, Benthin, Wald 2013, "Watertight Ray/Triangle Intersection".
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shear {
-    origin: Vec3,
-    /// The axis along which the direction is longest.
-    pub(super) axis: usize,
+    pub(super) origin: Vec3,
+    /// The axes of the sheared space; the direction is longest along the last.
+    axes: [u8; 3],
     x: f32,
     y: f32,
     z: f32,
@@ -23,8 +24,35 @@ pub(super) struct TriangleHit {
     pub(super) b2: f32,
 }
 
+/// Edge functions of four triangles, and the depths of their vertices along the sheared axis.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Edges {
+    u: Vec4,
+    v: Vec4,
+    w: Vec4,
+    depths: [Vec4; 3],
+}
+
+impl Edges {
+    /// A bit for each triangle around which the edge functions agree in sign.
+    #[inline(always)]
+    pub(super) fn inside(&self) -> u32 {
+        let least = self.u.min(self.v).min(self.w);
+        let most = self.u.max(self.v).max(self.w);
+        (least.cmpge(Vec4::ZERO) | most.cmple(Vec4::ZERO)).bitmask()
+    }
+
+    /// A bit for each triangle with an edge function of zero, which may be a rounding.
+    #[inline(always)]
+    pub(super) fn on_edge(&self) -> u32 {
+        let zero = |e: Vec4| e.cmpeq(Vec4::ZERO);
+        (zero(self.u) | zero(self.v) | zero(self.w)).bitmask()
+    }
+}
+
 impl Shear {
     /// Prepares a ray with a finite direction other than zero.
+    #[inline]
     pub(super) fn new(ray: &Ray) -> Self {
         // -0 becomes +0, so that the sign of a zero cannot reach the result.
         let d = ray.direction + Vec3::ZERO;
@@ -32,29 +60,57 @@ impl Shear {
         let z = 1.0 / d[axis];
         Self {
             origin: ray.origin,
-            axis,
+            axes: [(axis as u8 + 1) % 3, (axis as u8 + 2) % 3, axis as u8],
             x: d[(axis + 1) % 3] * z,
             y: d[(axis + 2) % 3] * z,
             z,
         }
     }
 
-    /// Meets both sides of a triangle; `Z` must be [`Self::axis`].
-    ///
-    /// The edge functions of a shared edge differ in sign only, so no ray slips through between
-    /// two triangles. Nothing depends on hits found before.
+    /// The edge functions of four triangles; those of a shared edge differ in sign only, so no ray
+    /// slips through between two triangles. Nothing depends on hits found before.
     #[inline(always)]
-    pub(super) fn meet<const Z: usize>(&self, vertices: &[Vec3; 3]) -> Option<TriangleHit> {
-        let [a, b, c] = vertices.map(|v| {
-            let v = (v - self.origin).to_array();
-            let (x, y, z) = (v[(Z + 1) % 3], v[(Z + 2) % 3], v[Z]);
+    pub(super) fn edges(&self, block: &Block) -> Edges {
+        let axes = self.axes.map(usize::from);
+        let origin = axes.map(|axis| Vec4::splat(self.origin[axis]));
+        let (shear_x, shear_y) = (Vec4::splat(self.x), Vec4::splat(self.y));
+        let [a, b, c] = [0, 1, 2].map(|corner| {
+            let at = |i: usize| block.coordinate(corner, axes[i]) - origin[i];
+            let z = at(2);
+            (at(0) - shear_x * z, at(1) - shear_y * z, z)
+        });
+        Edges {
+            u: c.0 * b.1 - c.1 * b.0,
+            v: a.0 * c.1 - a.1 * c.0,
+            w: b.0 * a.1 - b.1 * a.0,
+            depths: [a.2, b.2, c.2],
+        }
+    }
+
+    /// Ray parameters and weights of the second and third vertex, of the triangles that are met.
+    #[inline(always)]
+    pub(super) fn hits(&self, edges: &Edges) -> (Vec4, Vec4, Vec4) {
+        let Edges { u, v, w, depths } = *edges;
+        let inverse = Vec4::ONE / (u + v + w);
+        let t = u * depths[0] + v * depths[1] + w * depths[2];
+        (t * Vec4::splat(self.z) * inverse, v * inverse, w * inverse)
+    }
+
+    /// Meets both sides of one triangle: the same as [`Self::edges`] and [`Self::hits`], but an edge
+    /// function of zero is computed again with exact products.
+    pub(super) fn meet(&self, vertices: &[Vec3; 3]) -> Option<TriangleHit> {
+        let axes = self.axes.map(usize::from);
+        let corners = vertices.map(|vertex| {
+            let v = vertex - self.origin;
+            let (x, y, z) = (v[axes[0]], v[axes[1]], v[axes[2]]);
             (x - self.x * z, y - self.y * z, z)
         });
+        let [a, b, c] = corners;
         let mut u = c.0 * b.1 - c.1 * b.0;
         let mut v = a.0 * c.1 - a.1 * c.0;
         let mut w = b.0 * a.1 - b.1 * a.0;
         if u == 0.0 || v == 0.0 || w == 0.0 {
-            (u, v, w) = exact_edges([a, b, c]);
+            (u, v, w) = exact_edges(corners);
         }
         if (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) {
             return None;
@@ -122,12 +178,7 @@ mod tests {
     const UNIT: [Vec3; 3] = [Vec3::ZERO, Vec3::X, Vec3::Y];
 
     fn meet(vertices: &[Vec3; 3], ray: &Ray) -> Option<TriangleHit> {
-        let shear = Shear::new(ray);
-        match shear.axis {
-            0 => shear.meet::<0>(vertices),
-            1 => shear.meet::<1>(vertices),
-            _ => shear.meet::<2>(vertices),
-        }
+        Shear::new(ray).meet(vertices)
     }
 
     #[test]

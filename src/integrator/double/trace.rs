@@ -37,7 +37,7 @@ pub(super) fn closest(scene: &PreparedScene, ray: &Ray) -> Option<Hit> {
             stack.extend(children);
             continue;
         }
-        for &primitive in bvh.primitives(node) {
+        for primitive in scene.aggregate().primitives(node) {
             let t_max = best.map_or(ray.t_max, |hit| hit.t);
             best = meet(shapes, primitive, ray)
                 .filter(|hit| hit.t < t_max)

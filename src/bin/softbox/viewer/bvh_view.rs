@@ -139,7 +139,7 @@ impl BvhView {
     pub(super) fn facts(&self) -> Option<NodeFacts> {
         let bvh = self.scene.as_ref()?.aggregate().bvh();
         let node = self.selected?;
-        let size = |node| bvh.slots(node).len();
+        let size = |node| bvh.primitives_below(node);
         Some(NodeFacts {
             depth: bvh.depth(node),
             primitives: size(node),
@@ -193,13 +193,13 @@ fn draw_walk(mesh: &mut Mesh, projector: &Projector, scene: &PreparedScene, node
     let bvh = scene.aggregate().bvh();
     if let Some(children) = bvh.children(node) {
         for (child, tint) in children.into_iter().zip([LEFT, RIGHT]) {
-            tint_triangles(mesh, projector, scene, bvh.primitives(child), tint);
+            tint_triangles(mesh, projector, scene, child, tint);
         }
         for child in children {
             add_box(mesh, projector, &bvh.bounds(child), Stroke::new(1.0, CHILD));
         }
     } else {
-        tint_triangles(mesh, projector, scene, bvh.primitives(node), LEFT);
+        tint_triangles(mesh, projector, scene, node, LEFT);
     }
     for above in bvh.path(node) {
         if above != node {
@@ -218,15 +218,19 @@ fn tint_triangles(
     mesh: &mut Mesh,
     projector: &Projector,
     scene: &PreparedScene,
-    primitives: &[u32],
+    node: NodeId,
     tint: Color32,
 ) {
-    let shapes = scene.shapes();
-    let step = primitives.len().div_ceil(MOST_TRIANGLES).max(1);
-    let triangles = primitives
-        .iter()
-        .filter(|&&p| (p as usize) < shapes.triangles.len());
-    for &primitive in triangles.step_by(step) {
+    let (shapes, aggregate) = (scene.shapes(), scene.aggregate());
+    let step = aggregate
+        .bvh()
+        .primitives_below(node)
+        .div_ceil(MOST_TRIANGLES)
+        .max(1);
+    let triangles = aggregate
+        .primitives(node)
+        .filter(|&p| (p as usize) < shapes.triangles.len());
+    for primitive in triangles.step_by(step) {
         add_triangle(mesh, projector, shapes.vertices(primitive as usize), tint);
     }
 }

@@ -1,0 +1,93 @@
+use glam::{Vec3, Vec4};
+
+use super::Shapes;
+use crate::bvh::{BLOCK, NO_PRIMITIVE};
+
+/// Four primitives of a leaf side by side.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(32))]
+pub(super) struct Block {
+    /// Per vertex and axis, one lane per triangle; NaN in lanes without a triangle, which nothing
+    /// can hit.
+    corners: [[[f32; BLOCK]; 3]; 3],
+    /// Ids, [`NO_PRIMITIVE`] in empty lanes; the first with [`MORE`] and [`SPHERES`].
+    ids: [u32; BLOCK],
+}
+
+/// Bit of a block's first id: the leaf goes on in the next block.
+const MORE: u32 = 1 << 31;
+/// Bit of a block's first id: some lanes hold spheres.
+const SPHERES: u32 = 1 << 30;
+
+/// Ids must be smaller than this.
+pub(super) const ID_LIMIT: u32 = SPHERES - 1;
+
+/// What is in an empty lane, without the bits.
+const NOTHING: u32 = NO_PRIMITIVE & !(MORE | SPHERES);
+
+impl Block {
+    /// The primitives `ids` of `shapes`; `more` if the leaf goes on.
+    pub(super) fn new(shapes: &Shapes, ids: &[u32; BLOCK], more: bool) -> Self {
+        let mut corners = [[[f32::NAN; BLOCK]; 3]; 3];
+        let mut flags = if more { MORE } else { 0 };
+        for (lane, &id) in ids.iter().enumerate() {
+            if id == NO_PRIMITIVE {
+                continue;
+            }
+            if id as usize >= shapes.triangles.len() {
+                flags |= SPHERES;
+                continue;
+            }
+            let vertices = shapes.vertices(id as usize);
+            for (corner, vertex) in corners.iter_mut().zip(vertices) {
+                for (axis, value) in corner.iter_mut().zip(vertex.to_array()) {
+                    axis[lane] = value;
+                }
+            }
+        }
+        let mut ids = ids.map(|id| id & NOTHING);
+        ids[0] |= flags;
+        Self { corners, ids }
+    }
+
+    /// Coordinate `axis` of vertex `corner` of all triangles.
+    #[inline(always)]
+    pub(super) fn coordinate(&self, corner: usize, axis: usize) -> Vec4 {
+        Vec4::from_array(self.corners[corner][axis])
+    }
+
+    /// The vertices of the triangle in `lane`.
+    pub(super) fn vertices(&self, lane: usize) -> [Vec3; 3] {
+        self.corners
+            .map(|corner| Vec3::from_array(corner.map(|axis| axis[lane])))
+    }
+
+    /// The primitive in `lane`.
+    #[inline(always)]
+    pub(super) fn id(&self, lane: usize) -> u32 {
+        self.ids[lane] & NOTHING
+    }
+
+    /// The primitives.
+    pub(super) fn ids(&self) -> impl Iterator<Item = u32> + '_ {
+        (0..BLOCK)
+            .map(|lane| self.id(lane))
+            .filter(|&id| id != NOTHING)
+    }
+
+    /// True for most blocks: no spheres, and the last of its leaf.
+    #[inline(always)]
+    pub(super) fn is_plain(&self) -> bool {
+        self.ids[0] < SPHERES
+    }
+
+    /// True if the leaf goes on in the next block.
+    pub(super) fn has_more(&self) -> bool {
+        self.ids[0] & MORE != 0
+    }
+
+    /// True if some lanes hold spheres.
+    pub(super) fn has_spheres(&self) -> bool {
+        self.ids[0] & SPHERES != 0
+    }
+}
