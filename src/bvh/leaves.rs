@@ -16,13 +16,16 @@ pub trait Leaves: Sync {
     fn visit<const ANY: bool>(
         &self,
         block: u32,
-        slab: &SlabRay,
+        ray: (&Ray, &SlabRay),
         query: &mut Self::Query,
         blocks: &mut u64,
     ) -> f32;
 
-    /// Asks the processor for a block that will be visited soon.
-    fn prefetch(&self, block: u32);
+    /// One block in memory.
+    type Block;
+
+    /// All blocks, so that they can be fetched before they are visited.
+    fn blocks(&self) -> &[Self::Block];
 }
 
 /// Work done by traversal.

@@ -28,7 +28,6 @@ mod tree;
 
 pub use leaves::{Leaves, Work};
 pub use settings::{BvhKind, BvhSettings};
-pub use simd::prefetch;
 pub use slab::{SlabRay, T_FAR, padded};
 pub use stats::BvhStats;
 pub use tree::{BLOCK, Bvh, LeafBlocks, NO_PRIMITIVE, NodeId};

@@ -1,4 +1,4 @@
-use glam::Vec3;
+use glam::Vec4;
 
 use crate::math::{Aabb, Ray, gamma};
 
@@ -20,77 +20,138 @@ const PAD: f32 = gamma(16);
 /// for the roundings of the box test alone.
 pub(super) const FAR_MARGIN: f32 = 1.0 + 2.0 * gamma(8);
 
+/// A step of this fraction of a number's size changes it.
+const ULP: f32 = f32::EPSILON;
+
 /// The box that stands for `bounds` in the tree: slightly larger on every side, never flat.
+#[inline]
 pub fn padded(bounds: Aabb) -> Aabb {
-    let pad = (bounds.extent().max_element() * PAD).max(MIN_PAD);
-    let outward = |v: Vec3, sign: f32| {
-        let moved = v + Vec3::splat(sign * pad);
-        if sign < 0.0 {
-            Vec3::from_array(moved.to_array().map(f32::next_down))
-        } else {
-            Vec3::from_array(moved.to_array().map(f32::next_up))
-        }
-    };
+    let largest = bounds.min.abs().max(bounds.max.abs()).max_element();
+    let pad = padding(bounds.extent().max_element(), largest);
     Aabb {
-        min: outward(bounds.min, -1.0),
-        max: outward(bounds.max, 1.0),
+        min: bounds.min - pad,
+        max: bounds.max + pad,
     }
+}
+
+/// By how much a box is padded whose longest edge is `extent` and whose largest coordinate is
+/// `largest` away from 0. One coordinate moves by at least one rounding.
+fn padding(extent: f32, largest: f32) -> f32 {
+    extent * PAD + (largest * ULP + MIN_PAD)
+}
+
+/// The same as [`padded`] for four boxes, a lane each: minimum and maximum per axis.
+#[inline(always)]
+fn padded_four(boxes: &mut [[Vec4; 2]; 3]) {
+    let [[x0, x1], [y0, y1], [z0, z1]] = *boxes;
+    let extent = (x1 - x0).max(y1 - y0).max(z1 - z0);
+    let largest = |lo: Vec4, hi: Vec4| lo.abs().max(hi.abs());
+    let largest = largest(x0, x1).max(largest(y0, y1)).max(largest(z0, z1));
+    let pad = extent * Vec4::splat(PAD) + (largest * Vec4::splat(ULP) + Vec4::splat(MIN_PAD));
+    *boxes = [
+        [x0 - pad, x1 + pad],
+        [y0 - pad, y1 + pad],
+        [z0 - pad, z1 + pad],
+    ];
 }
 
 /// A ray prepared for box tests.
 #[derive(Clone, Copy, Debug)]
+#[repr(C, align(16))]
 pub struct SlabRay {
-    pub(super) origin: Vec3,
-    pub(super) inverse: Vec3,
-    /// Whether the direction points down the axis.
-    pub(super) negative: [bool; 3],
-    pub(super) t_min: f32,
-    t_max: f32,
+    /// Origin and `t_min`. In memory, so that an axis can be chosen without a branch.
+    pub(super) origin: [f32; 4],
+    /// One over the direction, finite, and `t_max`.
+    pub(super) inverse: [f32; 4],
+    /// A bit for each axis on which the direction points down.
+    pub(super) octant: u32,
 }
 
 impl SlabRay {
     /// Prepares `ray`; `None` when it cannot meet anything (a number that is not finite, no
     /// direction, nothing between `t_min` and `t_max`).
+    #[inline(always)]
     pub fn new(ray: &Ray) -> Option<Self> {
-        let valid = ray.origin.is_finite()
-            && ray.direction.is_finite()
-            && ray.direction != Vec3::ZERO
-            && ray.t_min < ray.t_max
-            && ray.t_min.is_finite();
-        valid.then(|| Self {
-            origin: ray.origin,
-            // -0 becomes +0; the reciprocal stays finite, so that 0 · inf cannot arise.
-            inverse: (ray.direction + Vec3::ZERO)
-                .recip()
-                .clamp(Vec3::splat(-f32::MAX), Vec3::splat(f32::MAX)),
-            negative: ray.direction.to_array().map(|d| d < 0.0),
-            t_min: ray.t_min,
-            t_max: ray.t_max.min(T_FAR),
+        let origin = ray.origin.extend(ray.t_min);
+        let direction = ray.direction.extend(0.0);
+        // Zero, or NaN if anything is infinite or NaN.
+        let nothing = origin * 0.0 + direction * 0.0;
+        let is_finite = nothing.cmpeq(Vec4::ZERO).bitmask() == 0b1111;
+        let is_zero = direction.cmpeq(Vec4::ZERO).bitmask() == 0b1111;
+        if !is_finite | is_zero | (ray.t_min >= ray.t_max) | ray.t_max.is_nan() {
+            return None;
+        }
+        // -0 becomes +0; the reciprocal stays finite, so that 0 · inf cannot arise.
+        let mut inverse = (Vec4::ONE / (direction + Vec4::ZERO))
+            .min(Vec4::splat(f32::MAX))
+            .max(Vec4::splat(-f32::MAX));
+        inverse.w = if ray.t_max < T_FAR { ray.t_max } else { T_FAR };
+        Some(Self {
+            origin: origin.to_array(),
+            inverse: inverse.to_array(),
+            octant: direction.cmplt(Vec4::ZERO).bitmask(),
         })
     }
 
+    /// For an axis the side (0 minimum, 1 maximum) of a box that the ray meets first.
+    #[inline(always)]
+    pub(super) fn near_side(&self, axis: usize) -> usize {
+        (self.octant >> axis & 1) as usize
+    }
+
     /// The start of the valid interval.
+    #[inline(always)]
     pub fn t_min(&self) -> f32 {
-        self.t_min
+        self.origin[3]
     }
 
     /// The end of the valid interval, at most [`T_FAR`].
+    #[inline(always)]
     pub fn t_max(&self) -> f32 {
-        self.t_max
-    }
-
-    /// A bit for each axis on which the direction points down.
-    pub(super) fn octant(&self) -> usize {
-        let [x, y, z] = self.negative.map(usize::from);
-        x | y << 1 | z << 2
+        self.inverse[3]
     }
 
     /// The ray parameter at which the ray enters `bounds` (at least `t_min`), `None` if it misses.
     pub fn enter(&self, bounds: &Aabb) -> Option<f32> {
-        let lo = (bounds.min - self.origin) * self.inverse;
-        let hi = (bounds.max - self.origin) * self.inverse;
-        let near = lo.min(hi).max_element().max(self.t_min);
-        let far = lo.max(hi).min_element().min(self.t_max);
+        let origin = Vec4::from_array(self.origin).truncate();
+        let inverse = Vec4::from_array(self.inverse).truncate();
+        let lo = (bounds.min - origin) * inverse;
+        let hi = (bounds.max - origin) * inverse;
+        let near = lo.min(hi).max_element().max(self.t_min());
+        let far = lo.max(hi).min_element().min(self.t_max());
         (near <= far * FAR_MARGIN).then_some(near)
+    }
+
+    /// [`Self::enter`] for the [`padded`] forms of four boxes, a lane each with minimum and maximum
+    /// per axis: the parameters, and a bit for each box that is met. The same numbers: of two planes
+    /// of a box, the one that the direction meets first has the smaller parameter, in floating point
+    /// too.
+    #[inline(always)]
+    pub fn enter_four_padded(&self, mut boxes: [[Vec4; 2]; 3]) -> (Vec4, u32) {
+        padded_four(&mut boxes);
+        let t = |axis: usize, side: usize| {
+            (boxes[axis][side & 1] - Vec4::splat(self.origin[axis]))
+                * Vec4::splat(self.inverse[axis])
+        };
+        let [x, y, z] = [0, 1, 2].map(|axis| self.near_side(axis));
+        let near = t(0, x)
+            .max(t(1, y))
+            .max(t(2, z).max(Vec4::splat(self.t_min())));
+        let far = t(0, x ^ 1)
+            .min(t(1, y ^ 1))
+            .min(t(2, z ^ 1).min(Vec4::splat(self.t_max())));
+        (near, near.cmple(far * FAR_MARGIN).bitmask())
+    }
+
+    /// The origin, then [`Self::t_min`].
+    #[inline(always)]
+    pub fn origin(&self) -> &[f32; 4] {
+        &self.origin
+    }
+
+    /// One over the direction per axis, finite, then [`Self::t_max`].
+    #[inline(always)]
+    pub fn inverse_direction(&self) -> &[f32; 4] {
+        &self.inverse
     }
 }

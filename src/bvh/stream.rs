@@ -1,8 +1,8 @@
 use super::leaves::{Leaves, Work};
-use super::node::LEAF;
+use super::node::{LEAF, WideNode};
 use super::simd::{Kernel, NodeTest, prefetch};
 use super::slab::SlabRay;
-use super::stack::{DONE, Stack, stack_size};
+use super::stack::{DONE, Stacks};
 use super::tree::Bvh;
 use crate::math::Ray;
 
@@ -28,67 +28,55 @@ struct Lane<Q> {
     limit: f32,
     /// What is visited next.
     at: u32,
-    octant: u32,
-    /// Height of the stack.
-    open: u32,
+    /// Top of the stack.
+    top: u32,
     /// Number of the ray.
     ray: u32,
     query: Q,
 }
 
-/// Numbers of lanes.
-struct Queue {
-    lanes: [u8; 2 * LANES],
-    len: usize,
+/// Lanes that wait for their next step, a bit each.
+struct Waiting {
+    nodes: u32,
+    leaves: u32,
+    done: u32,
+    node_memory: *const u8,
+    block_memory: *const u8,
+    block_size: usize,
 }
 
-impl Queue {
-    const EMPTY: Self = Self {
-        lanes: [0; 2 * LANES],
-        len: 0,
-    };
-
-    /// Appends `lane` if `condition`, without a branch.
+impl Waiting {
+    /// Puts `lane` where its next step is done, and asks for the memory of that step. No branch:
+    /// what comes next is hard to predict.
     #[inline(always)]
-    fn push_if(&mut self, condition: bool, lane: u8) {
-        self.lanes[self.len % (2 * LANES)] = lane;
-        self.len += usize::from(condition);
-    }
-
-    /// The lanes; the queue is empty afterwards.
-    #[inline(always)]
-    fn take(&mut self) -> ([u8; 2 * LANES], usize) {
-        (self.lanes, std::mem::take(&mut self.len))
-    }
-}
-
-struct Queues {
-    nodes: Queue,
-    leaves: Queue,
-    done: Queue,
-}
-
-impl Queues {
-    /// Puts `lane` where its next step is done, and asks for the memory of that step.
-    #[inline(always)]
-    fn put<L: Leaves>(&mut self, bvh: &Bvh, leaves: &L, lane: u8, at: u32) {
+    fn put(&mut self, lane: u32, at: u32) {
         let is_leaf = at & LEAF != 0;
         let is_done = at == DONE;
-        self.nodes.push_if(!is_leaf, lane);
-        self.leaves.push_if(is_leaf & !is_done, lane);
-        self.done.push_if(is_done, lane);
-        if is_leaf {
-            leaves.prefetch(at & !LEAF);
-        } else if let Some(node) = bvh.nodes().get(at as usize) {
-            prefetch(node);
-        }
+        self.nodes |= u32::from(!is_leaf) << lane;
+        self.leaves |= u32::from(is_leaf & !is_done) << lane;
+        self.done |= u32::from(is_done) << lane;
+        let (memory, size) = if is_leaf {
+            (self.block_memory, self.block_size)
+        } else {
+            (self.node_memory, size_of::<WideNode>())
+        };
+        prefetch(memory.wrapping_add((at & !LEAF) as usize * size), 4);
     }
+}
+
+/// Takes the lowest bit out of a set.
+#[inline(always)]
+fn take(set: &mut u32) -> u32 {
+    let lowest = set.trailing_zeros();
+    *set &= *set - 1;
+    lowest
 }
 
 impl<L: Leaves, F: FnMut(usize, Option<&L::Query>), const ANY: bool> Stream<'_, L, F, ANY> {
-    /// The next ray that can meet anything; answers those that cannot.
+    /// The next ray that can meet anything, at the root with a stack from `bottom` on; answers those
+    /// that cannot.
     #[inline(always)]
-    fn next(&mut self, next: &mut usize) -> Option<Lane<L::Query>> {
+    fn next(&mut self, next: &mut usize, bottom: usize) -> Option<Lane<L::Query>> {
         while let Some(ray) = self.rays.get(*next) {
             let number = *next;
             *next += 1;
@@ -97,8 +85,7 @@ impl<L: Leaves, F: FnMut(usize, Option<&L::Query>), const ANY: bool> Stream<'_, 
                     slab,
                     limit: slab.t_max(),
                     at: 0,
-                    octant: slab.octant() as u32,
-                    open: 1,
+                    top: bottom as u32,
                     ray: number as u32,
                     query: self.leaves.query(ray, &slab),
                 });
@@ -118,64 +105,64 @@ impl<L: Leaves, F: FnMut(usize, Option<&L::Query>), const ANY: bool> Kernel
     fn run<N: NodeTest>(mut self) -> Work {
         let (bvh, leaves) = (self.bvh, self.leaves);
         let mut work = Work::default();
-        let mut queues = Queues {
-            nodes: Queue::EMPTY,
-            leaves: Queue::EMPTY,
-            done: Queue::EMPTY,
+        let mut waiting = Waiting {
+            nodes: 0,
+            leaves: 0,
+            done: 0,
+            node_memory: bvh.nodes().as_ptr().cast(),
+            block_memory: leaves.blocks().as_ptr().cast(),
+            block_size: size_of::<L::Block>(),
         };
-        let size = stack_size(bvh);
-        let (mut references, mut near) = (vec![0; LANES * size], vec![0.0; LANES * size]);
+        let mut stacks = Stacks::new(bvh, LANES);
         let mut next = 0;
         let mut lanes = Vec::with_capacity(LANES);
         while lanes.len() < LANES
-            && let Some(lane) = self.next(&mut next)
+            && let Some(lane) = self.next(&mut next, stacks.bottom(lanes.len()))
         {
-            let number = lanes.len();
-            let begin = number * size;
-            Stack::new(&mut references[begin..], &mut near[begin..]).clear();
-            queues.nodes.push_if(true, number as u8);
+            waiting.nodes |= 1 << lanes.len();
             lanes.push(lane);
         }
-        while queues.nodes.len + queues.leaves.len > 0 {
-            let (queue, len) = queues.nodes.take();
-            work.nodes += len as u64;
-            for &number in &queue[..len] {
+        while waiting.nodes | waiting.leaves != 0 {
+            let mut now = std::mem::take(&mut waiting.nodes);
+            work.nodes += u64::from(now.count_ones());
+            while now != 0 {
+                let number = take(&mut now);
                 let lane = &mut lanes[number as usize];
-                let begin = number as usize * size;
-                let (references, near) = (&mut references[begin..], &mut near[begin..]);
-                let mut stack = Stack::new(&mut references[..size], &mut near[..size]);
                 let node = &bvh.nodes()[lane.at as usize];
                 let met = N::enter(node, &lane.slab, lane.limit);
-                let open = lane.open as usize;
-                let open = stack.push::<N, ANY>(open, lane.octant as usize, met, &node.children);
-                let (at, open) = stack.pop::<ANY>(open, lane.limit);
-                (lane.at, lane.open) = (at, open as u32);
-                queues.put(bvh, leaves, number, at);
+                let (top, octant) = (lane.top as usize, lane.slab.octant as usize);
+                let top = stacks.push::<N, ANY>(top, octant, met, &node.children);
+                let (at, top) = stacks.pop::<ANY>(top, lane.limit);
+                (lane.at, lane.top) = (at, top as u32);
+                waiting.put(number, at);
             }
-            let (queue, len) = queues.leaves.take();
-            for &number in &queue[..len] {
+            let mut now = std::mem::take(&mut waiting.leaves);
+            while now != 0 {
+                let number = take(&mut now);
                 let lane = &mut lanes[number as usize];
-                let begin = number as usize * size;
-                let (references, near) = (&mut references[begin..], &mut near[begin..]);
-                let stack = Stack::new(&mut references[..size], &mut near[..size]);
-                let blocks = &mut work.blocks;
-                let block = lane.at & !LEAF;
-                lane.limit = leaves.visit::<ANY>(block, &lane.slab, &mut lane.query, blocks);
-                let (at, open) = if ANY && lane.limit == f32::NEG_INFINITY {
-                    (DONE, 1)
+                let (block, blocks) = (lane.at & !LEAF, &mut work.blocks);
+                lane.limit = leaves.visit::<ANY>(
+                    block,
+                    (&self.rays[lane.ray as usize], &lane.slab),
+                    &mut lane.query,
+                    blocks,
+                );
+                let (at, top) = if ANY && lane.limit == f32::NEG_INFINITY {
+                    (DONE, 0)
                 } else {
-                    stack.pop::<ANY>(lane.open as usize, lane.limit)
+                    stacks.pop::<ANY>(lane.top as usize, lane.limit)
                 };
-                (lane.at, lane.open) = (at, open as u32);
-                queues.put(bvh, leaves, number, at);
+                (lane.at, lane.top) = (at, top as u32);
+                waiting.put(number, at);
             }
-            let (queue, len) = queues.done.take();
-            for &number in &queue[..len] {
+            let mut now = std::mem::take(&mut waiting.done);
+            while now != 0 {
+                let number = take(&mut now);
                 let lane = &mut lanes[number as usize];
                 (self.answer)(lane.ray as usize, Some(&lane.query));
-                if let Some(new) = self.next(&mut next) {
+                if let Some(new) = self.next(&mut next, stacks.bottom(number as usize)) {
                     *lane = new;
-                    queues.nodes.push_if(true, number);
+                    waiting.nodes |= 1 << number;
                 }
             }
         }

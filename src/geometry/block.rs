@@ -56,6 +56,18 @@ impl Block {
         Vec4::from_array(self.corners[corner][axis])
     }
 
+    /// Minimum and maximum per axis of all triangles.
+    #[inline(always)]
+    pub(super) fn bounds(&self) -> [[Vec4; 2]; 3] {
+        let axis = |axis: usize| {
+            let a = self.coordinate(0, axis);
+            let b = self.coordinate(1, axis);
+            let c = self.coordinate(2, axis);
+            [a.min(b).min(c), a.max(b).max(c)]
+        };
+        [axis(0), axis(1), axis(2)]
+    }
+
     /// The vertices of the triangle in `lane`.
     pub(super) fn vertices(&self, lane: usize) -> [Vec3; 3] {
         self.corners

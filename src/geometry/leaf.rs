@@ -1,9 +1,9 @@
-use glam::Vec3;
+use glam::Vec4;
 
 use super::block::Block;
 use super::triangle::{self, Shear};
 use super::{Hit, Shapes, Sphere};
-use crate::bvh::{BLOCK, Bvh, LeafBlocks, Leaves, NodeId, SlabRay, padded, prefetch};
+use crate::bvh::{BLOCK, Bvh, LeafBlocks, Leaves, NodeId, SlabRay, padded};
 use crate::math::{Aabb, Ray};
 
 /// The primitives in the order of the leaves, with their vertices at hand.
@@ -53,7 +53,6 @@ pub(super) fn boxes(shapes: &Shapes) -> Vec<Aabb> {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Query {
     shear: Shear,
-    direction: Vec3,
     /// The best hit so far.
     pub(super) hit: Hit,
 }
@@ -64,7 +63,6 @@ impl Query {
     /// Every test depends on the primitive and the ray alone, so the result depends neither on the
     /// tree nor on the order of visits: the hit counts only if the ray meets the primitive's own
     /// box, and lies no nearer than that box.
-    #[inline]
     fn offer(&mut self, slab: &SlabRay, hit: Hit, bounds: &Aabb) {
         // Moving to the front of the box only ever enlarges t, and must not carry it past t_min.
         // A t that is NaN, from numbers too large for f32, fails here too.
@@ -76,65 +74,74 @@ impl Query {
             return;
         };
         let t = hit.t.max(front);
-        let better = t < self.hit.t || t == self.hit.t && hit.primitive < self.hit.primitive;
-        if t < slab.t_max() && better {
-            self.hit = Hit { t, ..hit };
+        if t < slab.t_max() {
+            self.take(Hit { t, ..hit });
+        }
+    }
+
+    /// Keeps a valid hit if it is better than the best so far.
+    #[inline(always)]
+    fn take(&mut self, hit: Hit) {
+        let best = &self.hit;
+        if (hit.t < best.t) | ((hit.t == best.t) & (hit.primitive < best.primitive)) {
+            self.hit = hit;
         }
     }
 
     #[cold]
-    fn spheres(&mut self, leaves: &LeafOrder, slab: &SlabRay, block: &Block) {
-        let ray = Ray::new(self.shear.origin, self.direction);
+    fn spheres(&mut self, leaves: &LeafOrder, ray: (&Ray, &SlabRay), block: &Block) {
         for primitive in block.ids().filter(|&id| id >= leaves.first_sphere) {
             let sphere = leaves.spheres[(primitive - leaves.first_sphere) as usize];
-            for t in sphere.meet(&ray).into_iter().flatten() {
+            for t in sphere.meet(ray.0).into_iter().flatten() {
                 let hit = Hit {
                     t,
                     primitive,
                     b1: 0.0,
                     b2: 0.0,
                 };
-                self.offer(slab, hit, &sphere.bounds());
+                self.offer(ray.1, hit, &sphere.bounds());
             }
         }
     }
 
+    /// The same as [`Self::offer`] for each triangle of a block that the ray meets.
     #[inline(always)]
-    fn triangles(&mut self, slab: &SlabRay, block: &Block) {
-        let edges = self.shear.edges(block);
-        let mut inside = edges.inside();
+    fn triangles(&mut self, (ray, slab): (&Ray, &SlabRay), block: &Block) {
+        let edges = self.shear.edges(slab.origin(), block);
         let on_edge = edges.on_edge();
+        let (t, b1, b2) = self.shear.hits(&edges);
+        let possible = t.cmpgt(Vec4::splat(slab.t_min()))
+            & t.cmplt(Vec4::splat(slab.t_max()))
+            & t.cmple(Vec4::splat(self.hit.t));
+        let mut met = (edges.inside() & possible).bitmask() & !on_edge;
         if on_edge != 0 {
-            inside &= !on_edge;
-            self.triangles_on_edges(slab, block, on_edge);
+            self.triangles_on_edges((ray, slab), block, on_edge);
         }
-        if inside == 0 {
+        if met == 0 {
             return;
         }
-        let (t, b1, b2) = self.shear.hits(&edges);
+        let (front, meets) = slab.enter_four_padded(block.bounds());
+        let t = t.max(front);
+        met &= meets & t.cmplt(Vec4::splat(slab.t_max())).bitmask();
         let (t, b1, b2) = (t.to_array(), b1.to_array(), b2.to_array());
-        while inside != 0 {
-            let lane = inside.trailing_zeros() as usize % BLOCK;
-            inside &= inside - 1;
-            if t[lane] > slab.t_min() && t[lane] < slab.t_max() && t[lane] <= self.hit.t {
-                let hit = Hit {
-                    t: t[lane],
-                    primitive: block.id(lane),
-                    b1: b1[lane],
-                    b2: b2[lane],
-                };
-                let bounds = Aabb::from_points(block.vertices(lane));
-                self.offer(slab, hit, &bounds);
-            }
+        while met != 0 {
+            let lane = met.trailing_zeros() as usize % BLOCK;
+            met &= met - 1;
+            self.take(Hit {
+                t: t[lane],
+                primitive: block.id(lane),
+                b1: b1[lane],
+                b2: b2[lane],
+            });
         }
     }
 
     /// The triangles in `lanes`, one at a time with exact edge functions.
     #[cold]
-    fn triangles_on_edges(&mut self, slab: &SlabRay, block: &Block, lanes: u32) {
+    fn triangles_on_edges(&mut self, (ray, slab): (&Ray, &SlabRay), block: &Block, lanes: u32) {
         for lane in (0..BLOCK).filter(|lane| lanes >> lane & 1 == 1) {
             let vertices = block.vertices(lane);
-            if let Some(hit) = self.shear.meet(&vertices) {
+            if let Some(hit) = self.shear.meet(ray.origin, &vertices) {
                 let hit = Hit {
                     t: hit.t,
                     primitive: block.id(lane),
@@ -151,10 +158,9 @@ impl Leaves for LeafOrder {
     type Query = Query;
 
     #[inline(always)]
-    fn query(&self, ray: &Ray, _: &SlabRay) -> Query {
+    fn query(&self, ray: &Ray, slab: &SlabRay) -> Query {
         Query {
-            shear: Shear::new(ray),
-            direction: ray.direction,
+            shear: Shear::new(ray, slab.inverse_direction()),
             hit: Hit::MISS,
         }
     }
@@ -163,15 +169,15 @@ impl Leaves for LeafOrder {
     fn visit<const ANY: bool>(
         &self,
         first: u32,
-        slab: &SlabRay,
+        ray: (&Ray, &SlabRay),
         query: &mut Query,
         blocks: &mut u64,
     ) -> f32 {
         for block in &self.blocks[first as usize..] {
             *blocks += 1;
-            query.triangles(slab, block);
+            query.triangles(ray, block);
             if !block.is_plain() && block.has_spheres() {
-                query.spheres(self, slab, block);
+                query.spheres(self, ray, block);
             }
             if ANY && !query.hit.is_miss() {
                 return f32::NEG_INFINITY;
@@ -180,14 +186,15 @@ impl Leaves for LeafOrder {
                 break;
             }
         }
-        query.hit.t.min(slab.t_max())
+        let end = ray.1.t_max();
+        if query.hit.t < end { query.hit.t } else { end }
     }
 
+    type Block = Block;
+
     #[inline(always)]
-    fn prefetch(&self, block: u32) {
-        if let Some(block) = self.blocks.get(block as usize) {
-            prefetch(block);
-        }
+    fn blocks(&self) -> &[Block] {
+        &self.blocks
     }
 }
 

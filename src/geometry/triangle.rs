@@ -1,14 +1,13 @@
-use glam::{DVec3, Vec3, Vec4};
+use glam::{BVec4A, DVec3, Vec3, Vec4};
 
 use super::block::Block;
 use crate::math::{Aabb, Ray, gamma};
 
-/// A ray prepared for triangle tests: sheared so that it runs along one axis.
+/// The direction of a ray prepared for triangle tests: what shears it to run along one axis.
 ///
 /// Woop, Benthin, Wald 2013, "Watertight Ray/Triangle Intersection".
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shear {
-    pub(super) origin: Vec3,
     /// The axes of the sheared space; the direction is longest along the last.
     axes: [u8; 3],
     x: f32,
@@ -34,12 +33,12 @@ pub(super) struct Edges {
 }
 
 impl Edges {
-    /// A bit for each triangle around which the edge functions agree in sign.
+    /// True for each triangle around which the edge functions agree in sign.
     #[inline(always)]
-    pub(super) fn inside(&self) -> u32 {
+    pub(super) fn inside(&self) -> BVec4A {
         let least = self.u.min(self.v).min(self.w);
         let most = self.u.max(self.v).max(self.w);
-        (least.cmpge(Vec4::ZERO) | most.cmple(Vec4::ZERO)).bitmask()
+        least.cmpge(Vec4::ZERO) | most.cmple(Vec4::ZERO)
     }
 
     /// A bit for each triangle with an edge function of zero, which may be a rounding.
@@ -51,40 +50,56 @@ impl Edges {
 }
 
 impl Shear {
-    /// Prepares a ray with a finite direction other than zero.
-    #[inline]
-    pub(super) fn new(ray: &Ray) -> Self {
+    /// Prepares a ray with a finite direction other than zero, and one over that direction.
+    #[inline(always)]
+    pub(super) fn new(ray: &Ray, inverse: &[f32; 4]) -> Self {
         // -0 becomes +0, so that the sign of a zero cannot reach the result.
-        let d = ray.direction + Vec3::ZERO;
-        let axis = d.abs().max_position();
-        let z = 1.0 / d[axis];
+        let d = (ray.direction + Vec3::ZERO).extend(0.0).to_array();
+        let size = ray.direction.abs();
+        let z_is_longest = size.z > size.x && size.z > size.y;
+        let z = if z_is_longest {
+            2
+        } else {
+            usize::from(size.y > size.x)
+        };
+        // The axes that follow each axis in turn.
+        let (x, y) = (
+            (0b00_00_10_01 >> (2 * z)) % 4,
+            (0b00_01_00_10 >> (2 * z)) % 4,
+        );
         Self {
-            origin: ray.origin,
-            axes: [(axis as u8 + 1) % 3, (axis as u8 + 2) % 3, axis as u8],
-            x: d[(axis + 1) % 3] * z,
-            y: d[(axis + 2) % 3] * z,
-            z,
+            axes: [x as u8, y as u8, z as u8],
+            x: d[x] * inverse[z],
+            y: d[y] * inverse[z],
+            z: inverse[z],
         }
     }
 
     /// The edge functions of four triangles; those of a shared edge differ in sign only, so no ray
     /// slips through between two triangles. Nothing depends on hits found before.
     #[inline(always)]
-    pub(super) fn edges(&self, block: &Block) -> Edges {
-        let axes = self.axes.map(usize::from);
-        let origin = axes.map(|axis| Vec4::splat(self.origin[axis]));
-        let (shear_x, shear_y) = (Vec4::splat(self.x), Vec4::splat(self.y));
-        let [a, b, c] = [0, 1, 2].map(|corner| {
-            let at = |i: usize| block.coordinate(corner, axes[i]) - origin[i];
-            let z = at(2);
-            (at(0) - shear_x * z, at(1) - shear_y * z, z)
-        });
+    pub(super) fn edges(&self, origin: &[f32; 4], block: &Block) -> Edges {
+        let a = self.corner(origin, block, 0);
+        let b = self.corner(origin, block, 1);
+        let c = self.corner(origin, block, 2);
         Edges {
             u: c.0 * b.1 - c.1 * b.0,
             v: a.0 * c.1 - a.1 * c.0,
             w: b.0 * a.1 - b.1 * a.0,
             depths: [a.2, b.2, c.2],
         }
+    }
+
+    /// One vertex of four triangles in the sheared space.
+    #[inline(always)]
+    fn corner(&self, origin: &[f32; 4], block: &Block, corner: usize) -> (Vec4, Vec4, Vec4) {
+        let at = |axis: u8| {
+            let axis = usize::from(axis);
+            block.coordinate(corner, axis) - Vec4::splat(origin[axis % 4])
+        };
+        let [x, y, z] = self.axes;
+        let (x, y, z) = (at(x), at(y), at(z));
+        (x - Vec4::splat(self.x) * z, y - Vec4::splat(self.y) * z, z)
     }
 
     /// Ray parameters and weights of the second and third vertex, of the triangles that are met.
@@ -98,10 +113,10 @@ impl Shear {
 
     /// Meets both sides of one triangle: the same as [`Self::edges`] and [`Self::hits`], but an edge
     /// function of zero is computed again with exact products.
-    pub(super) fn meet(&self, vertices: &[Vec3; 3]) -> Option<TriangleHit> {
+    pub(super) fn meet(&self, origin: Vec3, vertices: &[Vec3; 3]) -> Option<TriangleHit> {
         let axes = self.axes.map(usize::from);
         let corners = vertices.map(|vertex| {
-            let v = vertex - self.origin;
+            let v = vertex - origin;
             let (x, y, z) = (v[axes[0]], v[axes[1]], v[axes[2]]);
             (x - self.x * z, y - self.y * z, z)
         });
@@ -178,7 +193,8 @@ mod tests {
     const UNIT: [Vec3; 3] = [Vec3::ZERO, Vec3::X, Vec3::Y];
 
     fn meet(vertices: &[Vec3; 3], ray: &Ray) -> Option<TriangleHit> {
-        Shear::new(ray).meet(vertices)
+        let slab = SlabRay::new(ray).expect("a valid ray");
+        Shear::new(ray, slab.inverse_direction()).meet(ray.origin, vertices)
     }
 
     #[test]

@@ -56,22 +56,22 @@ impl NodeTest for Avx2 {
 
     #[inline(always)]
     fn enter(node: &WideNode, ray: &SlabRay, limit: f32) -> (__m256, u32) {
-        let t = |axis: usize, side: bool| {
-            let planes = load(&node.planes[axis][usize::from(side)]);
+        let t = |axis: usize, side: usize| {
+            let planes = load(&node.planes[axis][side & 1]);
             let (origin, inverse) = (splat(&ray.origin[axis]), splat(&ray.inverse[axis]));
             // SAFETY: AVX2 is there (see `Avx2`).
             unsafe { _mm256_mul_ps(_mm256_sub_ps(planes, origin), inverse) }
         };
-        let [x, y, z] = ray.negative;
+        let [x, y, z] = [ray.near_side(0), ray.near_side(1), ray.near_side(2)];
         // SAFETY: AVX2 is there (see `Avx2`).
         unsafe {
             let near = _mm256_max_ps(
                 _mm256_max_ps(t(0, x), t(1, y)),
-                _mm256_max_ps(t(2, z), splat(&ray.t_min)),
+                _mm256_max_ps(t(2, z), splat(&ray.origin[3])),
             );
             let far = _mm256_min_ps(
-                _mm256_min_ps(t(0, !x), t(1, !y)),
-                _mm256_min_ps(t(2, !z), splat(&limit)),
+                _mm256_min_ps(t(0, x ^ 1), t(1, y ^ 1)),
+                _mm256_min_ps(t(2, z ^ 1), splat(&limit)),
             );
             let far = _mm256_mul_ps(far, _mm256_set1_ps(FAR_MARGIN));
             let meets = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(near, far));

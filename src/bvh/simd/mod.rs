@@ -5,7 +5,7 @@ mod avx2;
 mod portable;
 mod prefetch;
 
-pub use prefetch::prefetch;
+pub(super) use prefetch::prefetch;
 
 use super::node::{WIDTH, WideNode};
 use super::slab::SlabRay;

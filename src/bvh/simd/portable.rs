@@ -16,16 +16,18 @@ impl NodeTest for Portable {
         let mut out = [0.0; WIDTH];
         let mut meets = 0;
         for half in [0, 4] {
-            let t = |axis: usize, side: bool| {
-                let planes = &node.planes[axis][usize::from(side)];
+            let t = |axis: usize, side: usize| {
+                let planes = &node.planes[axis][side & 1];
                 let planes = Vec4::from_slice(&planes[half..half + 4]);
                 (planes - Vec4::splat(ray.origin[axis])) * Vec4::splat(ray.inverse[axis])
             };
-            let [x, y, z] = ray.negative;
+            let [x, y, z] = [ray.near_side(0), ray.near_side(1), ray.near_side(2)];
             let near = t(0, x)
                 .max(t(1, y))
-                .max(t(2, z).max(Vec4::splat(ray.t_min)));
-            let far = t(0, !x).min(t(1, !y)).min(t(2, !z).min(Vec4::splat(limit)));
+                .max(t(2, z).max(Vec4::splat(ray.t_min())));
+            let far = t(0, x ^ 1)
+                .min(t(1, y ^ 1))
+                .min(t(2, z ^ 1).min(Vec4::splat(limit)));
             meets |= near.cmple(far * FAR_MARGIN).bitmask() << half;
             out[half..half + 4].copy_from_slice(&near.to_array());
         }
