@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use softbox::bvh::BvhSettings;
-use softbox::geometry::{Aggregate, Shapes, Sphere, triangle_point_and_error};
+use softbox::geometry::{Hit, Shapes, Sphere, triangle_point_and_error};
 use softbox::math::{Ray, offset_origin};
 
 use crate::scenes::{self, Random};
@@ -91,6 +91,12 @@ struct Strays {
     crossings: usize,
 }
 
+/// A closed mesh and the unit normals of its triangles by winding.
+struct Body<'a> {
+    shapes: &'a Shapes,
+    normals: Vec<Vec3>,
+}
+
 /// A ray that leaves triangle `id` of a closed mesh.
 struct Departure {
     id: usize,
@@ -98,64 +104,72 @@ struct Departure {
     ray: Ray,
 }
 
-fn departure(shapes: &Shapes, random: &mut Random, start: Start) -> Departure {
-    let id = random.below(shapes.triangles.len());
-    let corners = shapes.vertices(id);
-    let [_, b1, b2] = weights(random, start);
-    let (point, error) = triangle_point_and_error(&corners, b1, b2);
-    let outward = normal(&corners);
-    let inside = random.unit() < 0.5;
-    let direction = leaving(random, if inside { -outward } else { outward });
-    let origin = offset_origin(point, error, outward, direction);
-    Departure {
-        id,
-        inside,
-        ray: Ray::new(origin, direction),
-    }
-}
-
-/// Traces `n` rays that leave triangles of a closed mesh, about half of them inwards.
-fn strays(shapes: &Shapes, aggregate: &Aggregate, start: Start, n: usize) -> Strays {
-    const BATCH: usize = 5_000;
-    let mut random = Random::new(1);
-    let mut strays = Strays::default();
-    for _ in 0..n / BATCH {
-        let departures: Vec<_> = (0..BATCH)
-            .map(|_| departure(shapes, &mut random, start))
-            .collect();
-        let rays: Vec<_> = departures.iter().map(|d| d.ray).collect();
-        for (d, hit) in departures.iter().zip(scenes::closest(aggregate, &rays)) {
-            if hit.is_miss() {
-                strays.escapes += usize::from(d.inside);
-            } else if hit.primitive == d.id as u32 {
-                strays.self_hits += 1;
-            } else {
-                let met = normal(&shapes.vertices(hit.primitive as usize));
-                let from_inside = d.ray.direction.dot(met) > 0.0;
-                strays.crossings += usize::from(from_inside != d.inside);
-            }
+impl<'a> Body<'a> {
+    fn new(shapes: &'a Shapes) -> Self {
+        let normal = |id| {
+            let [a, b, c] = shapes.vertices(id).map(Vec3::as_dvec3);
+            (b - a).cross(c - a).normalize().as_vec3()
+        };
+        Self {
+            shapes,
+            normals: (0..shapes.triangles.len()).map(normal).collect(),
         }
     }
-    strays
+
+    fn departure(&self, random: &mut Random, start: Start) -> Departure {
+        let id = random.below(self.normals.len());
+        let [_, b1, b2] = weights(random, start);
+        let (point, error) = triangle_point_and_error(&self.shapes.vertices(id), b1, b2);
+        let outward = self.normals[id];
+        let inside = random.unit() < 0.5;
+        let direction = leaving(random, if inside { -outward } else { outward });
+        let origin = offset_origin(point, error, outward, direction);
+        Departure {
+            id,
+            inside,
+            ray: Ray::new(origin, direction),
+        }
+    }
+
+    fn strays(&self, departures: &[Departure], hits: &[Hit]) -> Strays {
+        let mut strays = Strays::default();
+        for (from, hit) in departures.iter().zip(hits) {
+            if hit.is_miss() {
+                strays.escapes += usize::from(from.inside);
+            } else if hit.primitive == from.id as u32 {
+                strays.self_hits += 1;
+            } else {
+                let met = self.normals[hit.primitive as usize];
+                let from_inside = from.ray.direction.dot(met) > 0.0;
+                strays.crossings += usize::from(from_inside != from.inside);
+            }
+        }
+        strays
+    }
 }
 
-/// The unit normal by winding.
-fn normal([a, b, c]: &[Vec3; 3]) -> Vec3 {
-    let (ab, ac) = ((*b - *a).as_dvec3(), (*c - *a).as_dvec3());
-    ab.cross(ac).normalize().as_vec3()
-}
-
-/// `n` rays, half of them from near edges, and a quarter more from exactly on edges and corners.
+/// `n` rays, about half of them inwards, half of them from near edges, and a quarter more from
+/// exactly on edges and corners.
 fn check(name: &str, shapes: &Shapes, n: usize) {
-    for (variant, aggregate) in scenes::aggregates(shapes, BvhSettings::default()) {
-        for (start, n) in [
-            (Start::Anywhere, n / 2),
-            (Start::NearEdge, n / 2),
-            (Start::Edge, n / 8),
-            (Start::Corner, n / 8),
-        ] {
-            let strays = strays(shapes, &aggregate, start, n);
-            assert_eq!(strays, Strays::default(), "{name} {variant} {start:?}");
+    const BATCH: usize = 5_000;
+    let body = Body::new(shapes);
+    let aggregates = scenes::aggregates(shapes, BvhSettings::default());
+    let mut random = Random::new(1);
+    for (start, n) in [
+        (Start::Anywhere, n / 2),
+        (Start::NearEdge, n / 2),
+        (Start::Edge, n / 8),
+        (Start::Corner, n / 8),
+    ] {
+        for _ in 0..n / BATCH {
+            let departures: Vec<_> = (0..BATCH)
+                .map(|_| body.departure(&mut random, start))
+                .collect();
+            let rays: Vec<_> = departures.iter().map(|d| d.ray).collect();
+            for (variant, aggregate) in &aggregates {
+                let strays = body.strays(&departures, &scenes::closest(aggregate, &rays));
+                assert_eq!(strays, Strays::default(), "{name} {variant} {start:?}");
+            }
         }
     }
 }
@@ -205,26 +219,24 @@ fn g9_rays_from_a_sphere_stay_on_their_side() {
     ] {
         let sphere = Sphere { center, radius };
         let spheres = vec![sphere];
-        let aggregate = Aggregate::build(
-            Shapes {
-                spheres,
-                ..Shapes::default()
-            },
-            BvhSettings::default(),
-        );
+        let shapes = Shapes {
+            spheres,
+            ..Shapes::default()
+        };
         let mut random = Random::new(2);
-        for i in 0..200_000 {
-            let (point, error) = sphere.point_and_error(center + random.direction() * radius);
-            let outward = (point - center).normalize();
-            let inside = i % 2 == 0;
-            let direction = leaving(&mut random, if inside { -outward } else { outward });
-            let origin = offset_origin(point, error, outward, direction);
-            let hit = aggregate.closest(&Ray::new(origin, direction));
-            assert_eq!(
-                hit.is_miss(),
-                !inside,
-                "{center} {radius} {direction} {hit:?}"
-            );
+        let rays: Vec<_> = (0..200_000)
+            .map(|i| {
+                let (point, error) = sphere.point_and_error(center + random.direction() * radius);
+                let outward = (point - center).normalize();
+                let direction = leaving(&mut random, if i % 2 == 0 { -outward } else { outward });
+                Ray::new(offset_origin(point, error, outward, direction), direction)
+            })
+            .collect();
+        for (variant, aggregate) in scenes::aggregates(&shapes, BvhSettings::default()) {
+            let hits = scenes::closest(&aggregate, &rays);
+            for (i, (ray, hit)) in rays.iter().zip(hits).enumerate() {
+                assert_eq!(hit.is_miss(), i % 2 == 1, "{variant} {ray:?} {hit:?}");
+            }
         }
     }
 }
