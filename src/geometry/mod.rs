@@ -2,6 +2,7 @@
 //! under a BVH with the batch tracing interface.
 
 mod aggregate;
+mod departure;
 mod hit;
 mod leaf;
 mod mesh;
@@ -10,6 +11,7 @@ mod sphere;
 mod triangle;
 
 pub use aggregate::{Aggregate, TraceCounts};
+pub use departure::triangle_departure;
 pub use hit::Hit;
 pub use mesh::{Corner, Mesh, MeshTriangle};
 pub use shapes::Shapes;

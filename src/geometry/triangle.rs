@@ -15,16 +15,6 @@ pub(super) struct Shear {
     z: f32,
 }
 
-/// A point keeps away from the edges by this many bounds of the error of its coordinates. Enough
-/// for faces that meet at 10 degrees: the point is lifted by less than two of these bounds.
-const CLEARANCE: f32 = 8.0;
-
-/// Nor is it moved further than about this many bounds, where the triangle is narrower than that.
-const MOST_MOVE: f32 = 64.0;
-
-/// Nor to a weight above this, in triangles of the size of the error.
-const LARGEST_WEIGHT: f32 = 0.125;
-
 /// Where a ray meets a triangle; `t` may lie outside the ray's interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct TriangleHit {
@@ -109,21 +99,9 @@ pub(super) fn bounds(vertices: &[Vec3; 3]) -> Aabb {
 /// Pharr, Jakob, Humphreys 2016, "Physically Based Rendering", section 3.9.4, bound the rounding of
 /// the point. That is zero for a plane through a zero of its coordinate, where the triangle test
 /// still rounds in proportion to the vertices seen from the point; hence the second term.
-///
-/// A point on an edge is moved inwards by a few of these bounds. There a ray that leaves this
-/// triangle would start on the very plane of the neighbour, as often behind it as before it.
-/// Over the inside of this triangle it starts on the right side of both, whether they enclose the
-/// ray's side or not.
 pub fn triangle_point_and_error(vertices: &[Vec3; 3], b1: f32, b2: f32) -> (Vec3, Vec3) {
-    let weights = [1.0 - b1 - b2, b1, b2];
-    let (point, error) = weighted(vertices, weights);
-    inwards(vertices, weights, error.max_element())
-        .map_or((point, error), |weights| weighted(vertices, weights))
-}
-
-fn weighted(vertices: &[Vec3; 3], weights: [f32; 3]) -> (Vec3, Vec3) {
     let [a, b, c] = *vertices;
-    let (wa, wb, wc) = (a * weights[0], b * weights[1], c * weights[2]);
+    let (wa, wb, wc) = (a * (1.0 - b1 - b2), b * b1, c * b2);
     let point = wa + wb + wc;
     let reach = (a - point)
         .abs()
@@ -134,34 +112,6 @@ fn weighted(vertices: &[Vec3; 3], weights: [f32; 3]) -> (Vec3, Vec3) {
         point,
         (wa.abs() + wb.abs() + wc.abs()) * gamma(7) + Vec3::splat(reach * gamma(8)),
     )
-}
-
-/// The weights of a point close by that keeps clear of the edges, given the bound of the error of
-/// a coordinate; `None` if the point of `weights` does already.
-fn inwards(vertices: &[Vec3; 3], weights: [f32; 3], error: f32) -> Option<[f32; 3]> {
-    let [a, b, c] = *vertices;
-    let (ab, ac, bc) = (b - a, c - a, c - b);
-    let longest = ab
-        .length_squared()
-        .max(ac.length_squared())
-        .max(bc.length_squared());
-    let least = weights[0].min(weights[1]).min(weights[2]);
-    let most = MOST_MOVE * error;
-    // Nearly all points end here.
-    if least > 0.0 && least * least * longest >= most * most {
-        return None;
-    }
-    let longest = longest.sqrt();
-    let height = ab.cross(ac).length() / longest;
-    let enough = (CLEARANCE * error / height)
-        .min(most / longest)
-        .min(LARGEST_WEIGHT);
-    if least >= enough {
-        return None;
-    }
-    let raised = weights.map(|weight| weight.max(enough));
-    let sum = raised[0] + raised[1] + raised[2];
-    Some(raised.map(|weight| weight / sum))
 }
 
 #[cfg(test)]
@@ -207,29 +157,6 @@ mod tests {
     #[test]
     fn a_triangle_seen_edge_on_is_not_met() {
         assert!(meet(&UNIT, &Ray::new(Vec3::new(-1.0, 0.3, 0.0), Vec3::X)).is_none());
-    }
-
-    #[test]
-    fn points_keep_clear_of_edges_and_are_left_alone_elsewhere() {
-        let narrow = [Vec3::ZERO, Vec3::X, Vec3::new(0.5, 1e-4, 0.0)];
-        for (vertices, clearance) in [(UNIT, CLEARANCE), (narrow, 0.0)] {
-            let [a, b, c] = vertices;
-            for (b1, b2) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (0.5, 0.5), (0.25, 0.0)] {
-                let exact = a * (1.0 - b1 - b2) + b * b1 + c * b2;
-                let (point, error) = triangle_point_and_error(&vertices, b1, b2);
-                let error = error.max_element();
-                for (p, q, r) in [(a, b, c), (b, c, a), (c, a, b)] {
-                    let inner = Vec3::Z.cross(q - p).normalize();
-                    let away = (point - p).dot(inner) * (r - p).dot(inner).signum();
-                    assert!(away > 0.9 * clearance * error, "{b1} {b2}: {away} {error}");
-                }
-                assert!(point.distance(exact) < 3.0 * MOST_MOVE * error);
-            }
-        }
-        for (b1, b2) in [(0.25, 0.5), (1e-4, 0.5), (0.5, 0.4999)] {
-            let (point, _) = triangle_point_and_error(&UNIT, b1, b2);
-            assert_eq!(point, Vec3::new(b1, b2, 0.0));
-        }
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use softbox::bvh::BvhSettings;
-use softbox::geometry::{Hit, Shapes, Sphere, triangle_point_and_error};
+use softbox::geometry::{Hit, Shapes, Sphere, triangle_departure, triangle_point_and_error};
 use softbox::math::{Ray, offset_origin};
 
 use crate::scenes::{self, Random};
@@ -119,7 +119,9 @@ impl<'a> Body<'a> {
     fn departure(&self, random: &mut Random, start: Start) -> Departure {
         let id = random.below(self.normals.len());
         let [_, b1, b2] = weights(random, start);
-        let (point, error) = triangle_point_and_error(&self.shapes.vertices(id), b1, b2);
+        let corners = self.shapes.vertices(id);
+        let at = triangle_point_and_error(&corners, b1, b2);
+        let (point, error) = triangle_departure(&corners, b1, b2, at);
         let outward = self.normals[id];
         let inside = random.unit() < 0.5;
         let direction = leaving(random, if inside { -outward } else { outward });
