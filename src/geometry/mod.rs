@@ -3,6 +3,7 @@
 
 mod aggregate;
 mod block;
+mod departure;
 mod hit;
 mod leaf;
 mod mesh;
@@ -11,6 +12,7 @@ mod sphere;
 mod triangle;
 
 pub use aggregate::{Aggregate, TraceCounts};
+pub use departure::triangle_departure;
 pub use hit::Hit;
 pub use mesh::{Corner, Mesh, MeshTriangle};
 pub use shapes::Shapes;

@@ -102,7 +102,7 @@ impl Vertex<'_> {
     /// Where a ray towards `direction` starts.
     pub(super) fn origin(&self, direction: Vec3) -> Vec3 {
         offset_origin(
-            self.surface.point,
+            self.surface.departure,
             self.surface.error,
             self.surface.geometric_normal,
             direction,

@@ -1,7 +1,7 @@
 use glam::Vec3;
 
 use super::PreparedScene;
-use crate::geometry::{Hit, triangle_point_and_error};
+use crate::geometry::{Hit, triangle_departure, triangle_point_and_error};
 use crate::math::Ray;
 
 /// The surface at a hit, in tracing space.
@@ -9,7 +9,9 @@ use crate::math::Ray;
 pub struct SurfaceInteraction {
     /// The point, rounded onto the surface.
     pub point: Vec3,
-    /// Bound of the absolute error of each coordinate of `point`.
+    /// Where rays leave: `point`, but a little inwards of the edges of a triangle.
+    pub departure: Vec3,
+    /// Bound of the absolute error of each coordinate of `departure`.
     pub error: Vec3,
     /// Unit normal of the true surface: by winding, or outwards for spheres.
     pub geometric_normal: Vec3,
@@ -28,6 +30,7 @@ impl PreparedScene {
             let normal = (point - sphere.center).normalize_or(Vec3::Z);
             return SurfaceInteraction {
                 point,
+                departure: point,
                 error,
                 geometric_normal: normal,
                 shading_normal: normal,
@@ -35,7 +38,8 @@ impl PreparedScene {
             };
         }
         let vertices = shapes.vertices(hit.primitive as usize);
-        let (point, error) = triangle_point_and_error(&vertices, hit.b1, hit.b2);
+        let at = triangle_point_and_error(&vertices, hit.b1, hit.b2);
+        let (departure, error) = triangle_departure(&vertices, hit.b1, hit.b2, at);
         let [a, b, c] = vertices;
         let (ab, ac) = ((b - a).as_dvec3(), (c - a).as_dvec3());
         let geometric_normal = ab.cross(ac).normalize_or(glam::DVec3::Z).as_vec3();
@@ -46,7 +50,8 @@ impl PreparedScene {
                     (b0 * n0 + hit.b1 * n1 + hit.b2 * n2).normalize_or(geometric_normal)
                 });
         SurfaceInteraction {
-            point,
+            point: at.0,
+            departure,
             error,
             geometric_normal,
             shading_normal,

@@ -30,10 +30,10 @@ fn nothing_to_hit() -> Vec<[Vec3; 3]> {
 }
 
 fn all_kinds(shapes: &Shapes) -> impl Iterator<Item = Aggregate> {
-    let shapes = shapes.clone();
     [BvhKind::None, BvhKind::Median, BvhKind::Sah]
         .into_iter()
-        .map(move |kind| Aggregate::build(shapes.clone(), scenes::settings(kind, 2)))
+        .flat_map(|kind| scenes::aggregates(shapes, scenes::settings(kind, 2)))
+        .map(|(_, aggregate)| aggregate)
 }
 
 #[test]
@@ -43,7 +43,7 @@ fn g5_bad_triangles_are_counted_and_change_nothing() {
     let n_bad = bad.len();
     let corners = (0..300).map(|i| good.vertices(i)).chain(bad);
     let both = scenes::soup(corners);
-    let rays = scenes::random_rays(10_000, 4);
+    let rays = scenes::random_rays(100_000, 4);
     let expected = scenes::closest(&scenes::brute_force(good), &rays);
     for aggregate in all_kinds(&both) {
         let stats = aggregate.stats();
@@ -63,7 +63,7 @@ fn g5_nothing_but_bad_primitives_is_an_empty_scene() {
             radius,
         });
     }
-    let rays = scenes::random_rays(1_000, 5);
+    let rays = scenes::random_rays(100_000, 5);
     for aggregate in all_kinds(&shapes) {
         assert_eq!(aggregate.stats().excluded, shapes.len());
         assert!(aggregate.bvh().root().is_none());
@@ -86,7 +86,7 @@ fn g5_slivers_and_huge_triangles_give_finite_hits() {
             _ => [a, a + along * 1e-20, a + random.direction() * 1e-20],
         }
     }));
-    let rays = scenes::random_rays(3_000, 6);
+    let rays = scenes::random_rays(100_000, 6);
     let expected = scenes::closest(&scenes::brute_force(shapes.clone()), &rays);
     for aggregate in all_kinds(&shapes) {
         for (hit, want) in scenes::closest(&aggregate, &rays).iter().zip(&expected) {
@@ -98,7 +98,13 @@ fn g5_slivers_and_huge_triangles_give_finite_hits() {
 
 #[test]
 fn g16_rays_that_are_not_finite_hit_nothing() {
-    let aggregate = Aggregate::build(scenes::mixed(300), scenes::settings(BvhKind::Sah, 4));
+    let settings = scenes::settings(BvhKind::Sah, 4);
+    for (variant, aggregate) in scenes::aggregates(&scenes::mixed(300), settings) {
+        check_rays_that_are_not_finite(variant, &aggregate);
+    }
+}
+
+fn check_rays_that_are_not_finite(variant: &str, aggregate: &Aggregate) {
     let good = Ray::new(Vec3::new(0.1, 0.2, 3.0), Vec3::new(0.0, 0.01, -1.0));
     let mut bad = Vec::new();
     for value in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
@@ -135,11 +141,10 @@ fn g16_rays_that_are_not_finite_hit_nothing() {
     let mut counts = TraceCounts::default();
     let mut occluded = vec![true; bad.len()];
     aggregate.any_hit(&bad, &mut occluded, &mut counts);
-    assert!(!occluded.contains(&true));
+    assert!(!occluded.contains(&true), "{variant}");
     assert!(
-        scenes::closest(&aggregate, &bad)
-            .iter()
-            .all(|h| h.is_miss())
+        scenes::closest(aggregate, &bad).iter().all(|h| h.is_miss()),
+        "{variant}"
     );
     assert_eq!(
         counts,

@@ -55,6 +55,12 @@ pub(crate) fn brute_force(shapes: Shapes) -> Aggregate {
     Aggregate::build(shapes, settings(BvhKind::None, 1))
 }
 
+/// The same shapes in every form that the tracer has, each with its name: all must give the same
+/// hits, bit for bit, and pass every test.
+pub(crate) fn aggregates(shapes: &Shapes, settings: BvhSettings) -> Vec<(&'static str, Aggregate)> {
+    vec![("default", Aggregate::build(shapes.clone(), settings))]
+}
+
 pub(crate) fn closest(aggregate: &Aggregate, rays: &[Ray]) -> Vec<Hit> {
     let mut hits = vec![Hit::MISS; rays.len()];
     aggregate.closest_hit(rays, &mut hits, &mut TraceCounts::default());

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use softbox::bvh::{BvhKind, BvhSettings};
-use softbox::geometry::{Aggregate, Shapes};
+use softbox::geometry::Shapes;
 use softbox::math::Ray;
 
 use crate::scenes::{self, Random};
@@ -34,39 +34,59 @@ fn rays_from_inside(shapes: &Shapes, center: Vec3, n: usize, seed: u64) -> Vec<R
         .collect()
 }
 
-fn leaks(shapes: &Shapes, settings: BvhSettings, rays: &[Ray]) -> usize {
-    let aggregate = Aggregate::build(shapes.clone(), settings);
-    let hits = scenes::closest(&aggregate, rays);
-    hits.iter().filter(|h| h.is_miss()).count()
-}
-
-fn check(shapes: &Shapes, center: Vec3, n: usize) {
-    let rays = rays_from_inside(shapes, center, n, 3);
-    for leaf_size in [1, 4] {
-        assert_eq!(
-            leaks(shapes, scenes::settings(BvhKind::Sah, leaf_size), &rays),
-            0
-        );
+fn assert_no_leaks(shapes: &Shapes, settings: BvhSettings, rays: &[Ray]) {
+    for (variant, aggregate) in scenes::aggregates(shapes, settings) {
+        let hits = scenes::closest(&aggregate, rays);
+        let leaks = hits.iter().filter(|h| h.is_miss()).count();
+        assert_eq!(leaks, 0, "{variant} {settings:?}");
     }
-    assert_eq!(
-        leaks(shapes, scenes::settings(BvhKind::None, 1), &rays[..n / 20]),
-        0
-    );
 }
 
-#[test]
-fn g1_no_ray_leaves_a_closed_mesh() {
+/// Traces `n` rays through a tree, a twentieth of them past every triangle.
+fn check(shapes: &Shapes, center: Vec3, n: usize) {
+    const BATCH: usize = 100_000;
+    for (batch, from) in (0..n).step_by(BATCH).enumerate() {
+        let rays = rays_from_inside(shapes, center, BATCH.min(n - from), 3 + batch as u64);
+        let leaf_size = if batch % 2 == 0 { 4 } else { 1 };
+        assert_no_leaks(shapes, scenes::settings(BvhKind::Sah, leaf_size), &rays);
+        let brute_force = scenes::settings(BvhKind::None, 1);
+        assert_no_leaks(shapes, brute_force, &rays[..rays.len() / 20]);
+    }
+}
+
+fn check_at_the_origin(n: usize) {
     for shapes in [
         scenes::smooth_sphere(),
         scenes::spiky_sphere(),
         scenes::cube(),
     ] {
-        check(&shapes, Vec3::ZERO, 300_000);
+        check(&shapes, Vec3::ZERO, n / 3);
     }
 }
 
 #[test]
+fn g1_no_ray_leaves_a_closed_mesh() {
+    check_at_the_origin(2_000_000);
+}
+
+#[test]
+#[ignore = "the long form, ten million rays"]
+fn g1_no_ray_leaves_a_closed_mesh_at_length() {
+    check_at_the_origin(10_000_000);
+}
+
+#[test]
 fn g2_nor_far_from_the_origin() {
+    check_far_away(2_000_000);
+}
+
+#[test]
+#[ignore = "the long form, ten million rays"]
+fn g2_nor_far_from_the_origin_at_length() {
+    check_far_away(10_000_000);
+}
+
+fn check_far_away(n: usize) {
     for center in [Vec3::new(148_376.0, 1_234.0, -223_423.0), Vec3::splat(1e6)] {
         for mut shapes in [
             scenes::smooth_sphere(),
@@ -77,7 +97,7 @@ fn g2_nor_far_from_the_origin() {
                 // The mesh is much larger than the spacing of f32 at its place.
                 *p = *p * 100.0 + center;
             }
-            check(&shapes, center, 60_000);
+            check(&shapes, center, n / 6);
         }
     }
 }
@@ -102,10 +122,6 @@ fn g1_nor_does_a_ray_from_just_before_an_edge() {
         .filter(|r| r.direction.length() > 1e-6)
         .collect();
     for kind in [BvhKind::Sah, BvhKind::Median, BvhKind::None] {
-        assert_eq!(
-            leaks(&shapes, scenes::settings(kind, 1), &rays),
-            0,
-            "{kind:?}"
-        );
+        assert_no_leaks(&shapes, scenes::settings(kind, 1), &rays);
     }
 }
