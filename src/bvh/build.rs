@@ -7,7 +7,7 @@ use super::range::{Extents, PrimitiveRef, split_at_median};
 use super::sah::BinnedSplit;
 use super::slab::padded;
 use super::tree::Bvh;
-use super::{BvhKind, BvhSettings};
+use super::{BvhKind, BvhQuality, BvhSettings};
 use crate::math::Aabb;
 
 /// No node lies deeper than this (the root has depth 0).
@@ -192,6 +192,7 @@ impl Builder<'_> {
             BvhKind::None => return None,
             _ if n == 1 => return None,
             BvhKind::Median if fits => return None,
+            BvhKind::Sah if fits && self.settings.quality == BvhQuality::Fast => return None,
             BvhKind::Sah if depth < HALVING_DEPTH => {
                 let split = BinnedSplit::find(refs, &extents.centers);
                 let cost = split.map_or(f32::INFINITY, |s| s.cost);

@@ -19,7 +19,7 @@ mod traverse;
 mod tree;
 mod wide;
 
-pub use settings::{BvhKind, BvhSettings};
+pub use settings::{BvhKind, BvhQuality, BvhSettings};
 pub use slab::{SlabRay, T_FAR, padded};
 pub use stats::BvhStats;
 pub use traverse::{Leaf, Stack, Work};

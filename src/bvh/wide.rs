@@ -108,7 +108,14 @@ mod tests {
             })
             .collect();
         for kind in [BvhKind::None, BvhKind::Median, BvhKind::Sah] {
-            let bvh = Bvh::build(&boxes, &BvhSettings { kind, leaf_size: 3 });
+            let bvh = Bvh::build(
+                &boxes,
+                &BvhSettings {
+                    kind,
+                    leaf_size: 3,
+                    ..BvhSettings::default()
+                },
+            );
             let mut slots = Vec::new();
             let depth = walk(&collapse(bvh.pairs()), 0, &mut slots);
             assert!(depth <= bvh.stats().max_depth);

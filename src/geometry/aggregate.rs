@@ -1,6 +1,8 @@
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 use super::leaf::{LeafOrder, Search, boxes};
+use super::refine::refine;
 use super::{Hit, Shapes};
 use crate::bvh::{Bvh, BvhSettings, BvhStats, SlabRay, Stack};
 use crate::math::Ray;
@@ -24,7 +26,7 @@ pub struct TraceCounts {
 /// nothing, and nothing is hit at or beyond [`crate::bvh::T_FAR`].
 #[derive(Clone, Debug)]
 pub struct Aggregate {
-    shapes: Shapes,
+    shapes: Arc<Shapes>,
     bvh: Bvh,
     leaves: LeafOrder,
 }
@@ -46,7 +48,19 @@ impl Aggregate {
         let bvh = Bvh::build_with(&boxes(&shapes), &settings, progress)?;
         let leaves = LeafOrder::new(&shapes, bvh.order());
         Some(Self {
-            shapes,
+            shapes: Arc::new(shapes),
+            bvh,
+            leaves,
+        })
+    }
+
+    /// Another hierarchy over the same (shared) shapes that costs rays less and takes longer to
+    /// make; `progress` as in [`Self::build_with`].
+    pub fn refined(&self, progress: &(dyn Fn(f32) -> ControlFlow<()> + Sync)) -> Option<Self> {
+        let bvh = refine(&self.shapes, progress)?;
+        let leaves = LeafOrder::new(&self.shapes, bvh.order());
+        Some(Self {
+            shapes: Arc::clone(&self.shapes),
             bvh,
             leaves,
         })

@@ -5,6 +5,7 @@ mod aggregate;
 mod hit;
 mod leaf;
 mod mesh;
+mod refine;
 mod shapes;
 mod sphere;
 mod triangle;
