@@ -47,3 +47,21 @@ impl Default for BvhSettings {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn settings_stored_before_there_was_a_quality_are_read() {
+        let old: BvhSettings = serde_json::from_str(r#"{"kind":"median","leaf_size":7}"#).unwrap();
+        let expected = BvhSettings {
+            kind: BvhKind::Median,
+            leaf_size: 7,
+            quality: BvhQuality::High,
+        };
+        assert_eq!(old, expected);
+        let text = serde_json::to_string(&expected).unwrap();
+        assert!(text.contains(r#""quality":"high""#), "{text}");
+    }
+}

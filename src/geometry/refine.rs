@@ -4,8 +4,9 @@ use super::Shapes;
 use super::leaf::boxes;
 use crate::bvh::{Bvh, BvhKind, BvhQuality, BvhSettings};
 
-/// Largest leaf that the heuristic may choose.
-const LEAF_SIZE: u32 = 4;
+/// Largest leaf that the heuristic may choose: so large that it decides alone. On a knot of 70 000
+/// triangles it never wants more than six.
+const LEAF_SIZE: u32 = 16;
 
 /// The best hierarchy over `shapes` that this program can build; reports the finished fraction
 /// (0 to 1) to `progress`, which may stop it. `None` if it did.
