@@ -38,7 +38,16 @@ fn main() -> std::io::Result<()> {
             continue;
         }
         for (kind, leaf_size) in [(BvhKind::Sah, 4), (BvhKind::Sah, 8), (BvhKind::Median, 4)] {
-            report(&mut out, name, &shapes, BvhSettings { kind, leaf_size })?;
+            report(
+                &mut out,
+                name,
+                &shapes,
+                BvhSettings {
+                    kind,
+                    leaf_size,
+                    ..BvhSettings::default()
+                },
+            )?;
         }
     }
     Ok(())

@@ -43,7 +43,8 @@
 //!   but for the few that rounding sends elsewhere, both give the same radiance.
 //! - Tracing is a batch: [`geometry::Aggregate::closest_hit`], [`geometry::Aggregate::any_hit`].
 //!   It is watertight, and gives what testing every primitive gives, bit for bit.
-//! - [`scene::PreparedScene`] is immutable and shared by `Arc`.
+//! - [`scene::PreparedScene`] is immutable and shared by `Arc`. A better hierarchy, made in the
+//!   background, makes another one over the same tables; renders change over between two batches.
 //! - No module below the program knows windows, threads (but for `session`), the clock (but for
 //!   `session` and build times) or files (but for `io`).
 //! - The host says every frame what it wants to see; only `session` decides what that costs.

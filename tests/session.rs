@@ -1,5 +1,8 @@
 //! Test F8: the film does not depend on threads, pauses or passes; jobs replace each other cleanly.
 
+#[path = "session/refinement.rs"]
+mod refinement;
+
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 

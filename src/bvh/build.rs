@@ -8,7 +8,7 @@ use super::range::{Extents, PrimitiveRef, split_at_median};
 use super::sah::BinnedSplit;
 use super::slab::padded;
 use super::tree::{Bvh, LeafBlocks};
-use super::{BvhKind, BvhSettings};
+use super::{BvhKind, BvhQuality, BvhSettings};
 use crate::math::Aabb;
 
 /// Below this depth ranges are halved, whatever the heuristic says.
@@ -191,6 +191,7 @@ impl Builder<'_> {
             BvhKind::None => return None,
             _ if n == 1 => return None,
             BvhKind::Median if fits => return None,
+            BvhKind::Sah if fits && self.settings.quality == BvhQuality::Fast => return None,
             BvhKind::Sah if depth < HALVING_DEPTH => {
                 let split = BinnedSplit::find(refs, &extents.centers);
                 let cost = split.map_or(f32::INFINITY, |s| s.cost);

@@ -124,7 +124,12 @@ mod tests {
             })
             .collect();
         for kind in [BvhKind::None, BvhKind::Median, BvhKind::Sah] {
-            let (bvh, blocks) = Bvh::build(&boxes, &BvhSettings { kind, leaf_size: 3 });
+            let settings = BvhSettings {
+                kind,
+                leaf_size: 3,
+                ..BvhSettings::default()
+            };
+            let (bvh, blocks) = Bvh::build(&boxes, &settings);
             let mut ids: Vec<_> = blocks.iter().flatten().copied().collect();
             ids.retain(|&id| id != NO_PRIMITIVE);
             ids.sort_unstable();

@@ -27,7 +27,7 @@ mod traverse;
 mod tree;
 
 pub use leaves::{Leaves, Work};
-pub use settings::{BvhKind, BvhSettings};
+pub use settings::{BvhKind, BvhQuality, BvhSettings};
 pub use slab::{SlabRay, T_FAR, padded};
 pub use stats::BvhStats;
 pub use tree::{BLOCK, Bvh, LeafBlocks, NO_PRIMITIVE, NodeId};

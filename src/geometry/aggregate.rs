@@ -1,7 +1,9 @@
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 use super::block::{Block, ID_LIMIT};
 use super::leaf::{LeafOrder, boxes};
+use super::refine::refine;
 use super::{Hit, Shapes};
 use crate::bvh::{BLOCK, Bvh, BvhSettings, BvhStats, NodeId};
 use crate::math::{Isa, Ray};
@@ -25,7 +27,7 @@ pub struct TraceCounts {
 /// nothing, and nothing is hit at or beyond [`crate::bvh::T_FAR`].
 #[derive(Clone, Debug)]
 pub struct Aggregate {
-    shapes: Shapes,
+    shapes: Arc<Shapes>,
     bvh: Bvh,
     leaves: LeafOrder,
     isa: Isa,
@@ -49,10 +51,23 @@ impl Aggregate {
         let (bvh, ids) = Bvh::build_with(&boxes(&shapes), &settings, progress)?;
         let leaves = LeafOrder::new(&shapes, &bvh, &ids);
         Some(Self {
-            shapes,
+            shapes: Arc::new(shapes),
             bvh,
             leaves,
             isa: Isa::best(),
+        })
+    }
+
+    /// Another hierarchy over the same (shared) shapes that costs rays less and takes longer to
+    /// make; `progress` as in [`Self::build_with`].
+    pub fn refined(&self, progress: &(dyn Fn(f32) -> ControlFlow<()> + Sync)) -> Option<Self> {
+        let (bvh, ids) = refine(&self.shapes, progress)?;
+        let leaves = LeafOrder::new(&self.shapes, &bvh, &ids);
+        Some(Self {
+            shapes: Arc::clone(&self.shapes),
+            bvh,
+            leaves,
+            isa: self.isa,
         })
     }
 

@@ -7,6 +7,7 @@ mod departure;
 mod hit;
 mod leaf;
 mod mesh;
+mod refine;
 mod shapes;
 mod sphere;
 mod triangle;

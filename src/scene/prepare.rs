@@ -1,12 +1,13 @@
 //! From description to runtime scene.
 
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 use glam::{DMat3, DMat4, DVec3, Vec3};
 
 use super::emitters::{Emitters, EmittingRectangle, SurfaceEmission, emitters};
 use super::lights::{LightTable, light_nodes};
-use super::prepared::{DARK, FLAT, Owner, PreparedMaterial};
+use super::prepared::{DARK, FLAT, Owner, PreparedMaterial, Tables};
 use super::shading_normals::{NormalRule, corner_normals};
 use super::{Geometry, Instance, PreparedScene, Scene, Surface};
 use crate::bsdf::{Bsdf, Diffuse, Glass, Microfacet, Mirror, Refraction};
@@ -70,9 +71,8 @@ pub fn prepare(
                 .map(|rectangle| rectangle.name.clone()),
         )
         .collect();
-    Some(PreparedScene {
+    let tables = Tables {
         normalization,
-        aggregate,
         owners,
         owner_of,
         smooth,
@@ -85,6 +85,10 @@ pub fn prepare(
         environment: table.environment,
         course_compatible: settings.course_compatible,
         notes: emitters.notes,
+    };
+    Some(PreparedScene {
+        aggregate,
+        tables: Arc::new(tables),
     })
 }
 

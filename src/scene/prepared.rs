@@ -1,3 +1,6 @@
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
 use glam::Vec3;
 
 use super::SurfaceInteraction;
@@ -7,7 +10,7 @@ use crate::geometry::{Aggregate, Shapes};
 use crate::light::{Light, LightHit, LightSampler};
 use crate::math::Normalization;
 
-/// Index of the flat triangles in [`PreparedScene::smooth`].
+/// Index of the flat triangles in [`Tables::smooth`].
 pub(super) const FLAT: u32 = u32::MAX;
 /// Light index of surfaces that do not emit.
 pub(super) const DARK: u32 = u32::MAX;
@@ -31,8 +34,15 @@ pub(super) struct PreparedMaterial {
 /// see [`Normalization`].
 #[derive(Debug)]
 pub struct PreparedScene {
-    pub(super) normalization: Normalization,
     pub(super) aggregate: Aggregate,
+    /// Shared with the same scene under another hierarchy.
+    pub(super) tables: Arc<Tables>,
+}
+
+/// Everything about a scene but where rays meet it.
+#[derive(Debug)]
+pub(super) struct Tables {
+    pub(super) normalization: Normalization,
     /// One owner for each run of primitives, and the first primitive of each run.
     pub(super) owners: Vec<(u32, Owner)>,
     pub(super) owner_of: Vec<u32>,
@@ -53,12 +63,21 @@ pub struct PreparedScene {
 impl PreparedScene {
     /// The map between file coordinates and tracing space.
     pub fn normalization(&self) -> &Normalization {
-        &self.normalization
+        &self.tables.normalization
     }
 
     /// What rays are traced against.
     pub fn aggregate(&self) -> &Aggregate {
         &self.aggregate
+    }
+
+    /// The same scene under a hierarchy that costs rays less, see [`Aggregate::refined`]. Shapes and
+    /// tables are shared, and every ray has the same hits.
+    pub fn refined(&self, progress: &(dyn Fn(f32) -> ControlFlow<()> + Sync)) -> Option<Self> {
+        Some(Self {
+            aggregate: self.aggregate.refined(progress)?,
+            tables: Arc::clone(&self.tables),
+        })
     }
 
     /// The shapes.
@@ -68,27 +87,27 @@ impl PreparedScene {
 
     /// Sentences on what the step from description to runtime decided, for the import report.
     pub fn notes(&self) -> &[String] {
-        &self.notes
+        &self.tables.notes
     }
 
     /// True when the course program's picture is reproduced with its errors.
     pub fn is_course_compatible(&self) -> bool {
-        self.course_compatible
+        self.tables.course_compatible
     }
 
     fn owner(&self, primitive: u32) -> &Owner {
-        &self.owners[self.owner_of[primitive as usize] as usize].1
+        &self.tables.owners[self.tables.owner_of[primitive as usize] as usize].1
     }
 
     /// Unit normals at the corners of triangle `primitive`; `None` when it is flat.
     pub fn corner_normals(&self, primitive: u32) -> Option<[Vec3; 3]> {
-        let index = *self.smooth.get(primitive as usize)?;
-        (index != FLAT).then(|| self.corner_normals[index as usize])
+        let index = *self.tables.smooth.get(primitive as usize)?;
+        (index != FLAT).then(|| self.tables.corner_normals[index as usize])
     }
 
     /// The material of `primitive`.
     pub fn bsdf(&self, primitive: u32) -> &Bsdf {
-        &self.materials[self.owner(primitive).material as usize].bsdf
+        &self.tables.materials[self.owner(primitive).material as usize].bsdf
     }
 
     /// Reflectance or tint of `primitive`, the colour of an emitter's emission scaled to at most 1.
@@ -111,12 +130,12 @@ impl PreparedScene {
 
     /// Name of the material of `primitive`.
     pub fn material_name(&self, primitive: u32) -> &str {
-        &self.materials[self.owner(primitive).material as usize].name
+        &self.tables.materials[self.owner(primitive).material as usize].name
     }
 
     /// Name of the object that `primitive` belongs to.
     pub fn object_name(&self, primitive: u32) -> &str {
-        &self.instance_names[self.owner(primitive).instance as usize]
+        &self.tables.instance_names[self.owner(primitive).instance as usize]
     }
 
     /// The light that `primitive` is part of; `None` when it does not emit.
@@ -136,7 +155,7 @@ impl PreparedScene {
     /// Radiance from infinity along a ray in `direction` that met nothing. Camera rays do not see
     /// the ambient part.
     pub fn environment_radiance(&self, direction: Vec3, is_camera_ray: bool) -> Rgb {
-        self.environment.map_or(Rgb::ZERO, |light| {
+        self.tables.environment.map_or(Rgb::ZERO, |light| {
             self.light(light)
                 .radiance_from_infinity(direction, is_camera_ray)
         })
@@ -165,7 +184,7 @@ impl PreparedScene {
 
     /// The same for the environment.
     pub fn environment_pdf(&self, from: Vec3, direction: Vec3) -> f32 {
-        let Some(light) = self.environment else {
+        let Some(light) = self.tables.environment else {
             return 0.0;
         };
         self.light_pmf(light)
@@ -176,40 +195,41 @@ impl PreparedScene {
 
     /// Light number `light`.
     pub fn light(&self, light: u32) -> &Light {
-        &self.lights[light as usize]
+        &self.tables.lights[light as usize]
     }
 
     /// The light from infinity that fills the sphere, if there is any.
     pub fn environment_light(&self) -> Option<u32> {
-        self.environment
+        self.tables.environment
     }
 
     /// The number of lights.
     pub fn light_count(&self) -> usize {
-        self.lights.len()
+        self.tables.lights.len()
     }
 
     /// The lights that are sampled.
     pub fn sampled_lights(&self) -> &[u32] {
-        &self.sampled
+        &self.tables.sampled
     }
 
     /// A light chosen in proportion to its power by `u` in [0, 1), and the probability of that.
     pub fn choose_light(&self, u: f32) -> Option<(u32, f32)> {
-        let (index, pmf) = self.sampler.sample(u);
-        (pmf > 0.0).then(|| (self.sampled[index], pmf))
+        let (index, pmf) = self.tables.sampler.sample(u);
+        (pmf > 0.0).then(|| (self.tables.sampled[index], pmf))
     }
 
     /// The probability with which [`Self::choose_light`] gives `light`.
     pub fn light_pmf(&self, light: u32) -> f32 {
         // The sampled lights are all lights, or (course-compatible) never chosen by power.
-        self.sampler.pmf(light as usize)
+        self.tables.sampler.pmf(light as usize)
     }
 
     /// The number of lights that uniform hemisphere directions stand in for, at least 1.
     pub fn hemisphere_light_count(&self) -> u32 {
-        let counts = |light: &&u32| self.course_compatible || !self.light(**light).is_delta();
-        (self.sampled.iter().filter(counts).count() as u32).max(1)
+        let counts =
+            |light: &&u32| self.tables.course_compatible || !self.light(**light).is_delta();
+        (self.tables.sampled.iter().filter(counts).count() as u32).max(1)
     }
 }
 

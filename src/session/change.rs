@@ -1,6 +1,7 @@
 use std::sync::Arc;
 
 use super::RenderJob;
+use crate::bvh::{BvhQuality, BvhSettings};
 
 /// How much of a running render a new job leaves standing, from nothing lost to all.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -22,7 +23,7 @@ impl Change {
         }
         let (a, b) = (&old.settings, &new.settings);
         if !Arc::ptr_eq(&old.scene, &new.scene)
-            || a.bvh != b.bvh
+            || needs_new_tree(&a.bvh, &b.bvh)
             || a.course_compatible != b.course_compatible
         {
             return Self::Scene;
@@ -32,11 +33,26 @@ impl Change {
         film_settings.view = a.view;
         film_settings.stop = a.stop;
         film_settings.threads = a.threads;
+        film_settings.bvh = a.bvh;
         if old.camera != new.camera || *a != film_settings {
             Self::Film
         } else {
             Self::Continue
         }
+    }
+}
+
+/// A tree of standard quality is what high quality begins with.
+fn needs_new_tree(old: &BvhSettings, new: &BvhSettings) -> bool {
+    let can_grow = (old.quality, new.quality) == (BvhQuality::Standard, BvhQuality::High);
+    let as_before = BvhSettings {
+        quality: old.quality,
+        ..*new
+    };
+    if can_grow {
+        as_before != *old
+    } else {
+        new != old
     }
 }
 
@@ -69,6 +85,16 @@ mod tests {
         assert_eq!(with(|j| j.settings.seed = 1), Change::Film);
         assert_eq!(with(|j| j.camera.lens_radius = 0.1), Change::Film);
         assert_eq!(with(|j| j.settings.bvh.leaf_size = 9), Change::Scene);
+        assert_eq!(
+            with(|j| j.settings.bvh.quality = BvhQuality::Standard),
+            Change::Scene
+        );
+        let mut standard = job.clone();
+        standard.settings.bvh.quality = BvhQuality::Standard;
+        assert_eq!(Change::between(&standard, &job), Change::Continue);
+        let mut smaller_leaves = job.clone();
+        smaller_leaves.settings.bvh.leaf_size = 2;
+        assert_eq!(Change::between(&standard, &smaller_leaves), Change::Scene);
         assert_eq!(
             with(|j| j.scene = Arc::new(Scene::default())),
             Change::Scene

@@ -8,6 +8,7 @@ use super::{RenderJob, SessionOptions, SessionState, SessionStatus, Snapshot};
 use crate::scene::PreparedScene;
 
 mod picture;
+mod refiner;
 mod turn;
 
 /// What the host wants.

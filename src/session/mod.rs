@@ -3,6 +3,7 @@
 //! Knows neither windows nor files.
 
 mod adaptive;
+mod background;
 mod change;
 mod controller;
 mod first_hit_pass;
@@ -11,13 +12,14 @@ mod pace;
 mod pass;
 mod preview;
 mod publish;
+mod refinement;
 mod snapshot;
 mod status;
 mod workers;
 
 pub use job::{RenderJob, SessionOptions};
 pub use snapshot::{SampleCounts, Snapshot};
-pub use status::{SessionState, SessionStatus, StopReason};
+pub use status::{SessionState, SessionStatus, StopReason, TreeState};
 
 use std::sync::Arc;
 use std::thread::JoinHandle;
@@ -85,7 +87,8 @@ impl RenderSession {
         self.shared.status()
     }
 
-    /// The runtime scene of the picture that is shown.
+    /// The runtime scene of the picture that is shown. It gives way to the same scene under a
+    /// better hierarchy when that is ready, see [`TreeState`].
     pub fn prepared(&self) -> Option<Arc<PreparedScene>> {
         self.shared.prepared()
     }

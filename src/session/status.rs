@@ -36,6 +36,27 @@ pub enum SessionState {
     Finished(StopReason),
 }
 
+/// What has become of the hierarchy of a scene, which [`crate::bvh::BvhQuality::High`] asks to make
+/// better while the picture renders. Never changes the picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum TreeState {
+    /// As it was first built; nothing is being done about it.
+    #[default]
+    AsBuilt,
+    /// A better one is in the making; it rests while the render does.
+    Refining {
+        /// How far, 0..1.
+        fraction: f32,
+    },
+    /// The better one is in use.
+    Refined {
+        /// Seconds that it took.
+        seconds: f64,
+    },
+    /// There was a fault; the first one stays in use.
+    NotRefined,
+}
+
 /// A cheap description of a running render.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SessionStatus {
@@ -49,6 +70,8 @@ pub struct SessionStatus {
     pub seconds: f64,
     /// Seconds spent building the hierarchy and the light tables of this scene.
     pub build_seconds: f64,
+    /// The hierarchy of this scene.
+    pub tree: TreeState,
     /// Root of the relative squared error that the sample variance predicts.
     pub relative_error: Option<f64>,
     /// Seconds until the active stop rule ends the render; `None` until it means something.

@@ -47,7 +47,11 @@ impl Random {
 }
 
 pub(crate) fn settings(kind: BvhKind, leaf_size: u32) -> BvhSettings {
-    BvhSettings { kind, leaf_size }
+    BvhSettings {
+        kind,
+        leaf_size,
+        ..BvhSettings::default()
+    }
 }
 
 /// One leaf with everything: every ray meets every primitive.

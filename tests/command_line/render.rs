@@ -12,7 +12,7 @@ use crate::{errors, folder_with, mean, names, pixels, run, softbox, status};
 const SCENE: &str = "cornell-spheres";
 
 /// The keys that scripts rely on.
-const KEYS: [&str; 21] = [
+const KEYS: [&str; 23] = [
     "scene",
     "width",
     "height",
@@ -24,6 +24,8 @@ const KEYS: [&str; 21] = [
     "max_depth",
     "load_seconds",
     "build_seconds",
+    "bvh_quality",
+    "refine_seconds",
     "render_seconds",
     "cpu_seconds",
     "camera_rays",
@@ -64,6 +66,9 @@ fn the_json_object_has_the_promised_keys_and_sane_values() {
         ("mode", "importance".into()),
         ("max_depth", "inf".into()),
         ("camera_rays", (32 * 24 * 8).into()),
+        ("bvh_quality", "high".into()),
+        // A few spheres in a box are not worth it.
+        ("refine_seconds", Value::Null),
         ("invalid_samples", 0.into()),
     ] {
         assert_eq!(report[key], expected, "{key}");

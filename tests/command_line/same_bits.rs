@@ -78,6 +78,7 @@ fn the_command_in_a_picture_renders_it_again() {
         "--spp 5 --seed 3 --mode importance --light-samples 2 --max-depth 3",
         "--spp 6 --eye 0.3,0.8,3 --target 0,0.7,-1 --xfov 41.5 -b 0.05 -d 3.5 --region 2,3,9,7",
         "--spp 64 --adaptive 16,0.2 --mode hemisphere --bvh median",
+        "--spp 4 --bvh-quality fast --leaf-size 2",
         "--spp 3 --course-compatible --exposure -1 --view render --only-last-bounce",
         "--time-limit 0.2 --max-depth 2",
         "--target-error 0.4 --max-depth 1",

@@ -120,6 +120,8 @@ fn add_settings(line: &mut Line, settings: &RenderSettings) {
         d.bvh.leaf_size,
         leaf_size.to_string(),
     );
+    let quality = s.bvh.quality;
+    line.unless_default("--bvh-quality", quality, d.bvh.quality, name_of(quality));
     line.unless_default("--threads", s.threads, d.threads, s.threads.to_string());
 }
 

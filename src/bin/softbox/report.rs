@@ -5,10 +5,11 @@ use std::io::Write;
 use anyhow::Context;
 use serde::Serialize;
 use softbox::scene::Scene;
-use softbox::session::{SessionStatus, Snapshot};
+use softbox::session::{SessionStatus, Snapshot, TreeState};
 
 use crate::exit::{Failure, Status};
 use crate::job::Job;
+use crate::values::name_of;
 
 /// What is known at the end.
 pub(crate) struct Facts<'a> {
@@ -33,6 +34,9 @@ struct Report<'a> {
     max_depth: String,
     load_seconds: f64,
     build_seconds: f64,
+    bvh_quality: String,
+    /// Time that the better tree took beside the render; null when it never came into use.
+    refine_seconds: Option<f64>,
     render_seconds: f64,
     cpu_seconds: f64,
     camera_rays: u64,
@@ -88,6 +92,11 @@ pub(crate) fn print_json(facts: &Facts<'_>) -> Result<(), Failure> {
         max_depth: settings.max_depth.to_string(),
         load_seconds: facts.load_seconds,
         build_seconds: facts.status.build_seconds,
+        bvh_quality: name_of(settings.bvh.quality),
+        refine_seconds: match facts.status.tree {
+            TreeState::Refined { seconds } => Some(seconds),
+            _ => None,
+        },
         render_seconds: facts.status.seconds,
         cpu_seconds: cpu_seconds(),
         camera_rays: counts.camera_rays,

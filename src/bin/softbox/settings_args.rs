@@ -2,7 +2,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use glam::DVec3;
-use softbox::bvh::BvhKind;
+use softbox::bvh::{BvhKind, BvhQuality};
 use softbox::display::{DisplaySettings, ToneCurve};
 use softbox::image::Region;
 use softbox::settings::{
@@ -66,6 +66,9 @@ pub(crate) struct SettingsArgs {
     /// Most primitives in a leaf of the hierarchy [default: 4]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=255))]
     pub(crate) leaf_size: Option<u32>,
+    /// Effort for the hierarchy: fast, standard, or high, which goes on while the picture renders
+    #[arg(long, value_name = "QUALITY", value_parser = values::named::<BvhQuality>)]
+    pub(crate) bvh_quality: Option<BvhQuality>,
     /// Reproduce the course program's picture with its errors: light, exposure, gamma, view, normals
     #[arg(long)]
     pub(crate) course_compatible: bool,
@@ -136,6 +139,7 @@ impl SettingsArgs {
         settings.course_compatible |= self.course_compatible;
         set(&mut settings.bvh.kind, self.bvh);
         set(&mut settings.bvh.leaf_size, self.leaf_size);
+        set(&mut settings.bvh.quality, self.bvh_quality);
         set(&mut settings.threads, self.threads);
         set(&mut settings.view, self.view);
         settings.stop.samples_per_pixel = self.spp.or(settings.stop.samples_per_pixel);

@@ -84,6 +84,11 @@ impl Picture {
         self.job = job;
     }
 
+    /// Work done so far.
+    pub(super) fn counts(&self) -> &PathCounts {
+        &self.counts
+    }
+
     fn size(&self) -> [u32; 2] {
         [self.job.settings.width, self.job.settings.height]
     }

@@ -4,6 +4,7 @@ use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 use super::picture::Picture;
+use super::refiner::Refiner;
 use super::{Shared, lock};
 use crate::scene::{PrepareSettings, PreparedScene, prepare};
 use crate::session::change::Change;
@@ -24,6 +25,7 @@ pub(super) struct Turn<'a> {
     shared: &'a Shared,
     workers: Workers,
     scene: Option<Arc<PreparedScene>>,
+    refiner: Refiner,
     picture: Option<Picture>,
     generation: u64,
     /// Paths per second, measured.
@@ -45,6 +47,7 @@ impl<'a> Turn<'a> {
             shared,
             workers: Workers::new(1, shared.options.interactive),
             scene: None,
+            refiner: Refiner::default(),
             picture: None,
             generation: 0,
             rate: FIRST_RATE,
@@ -73,13 +76,16 @@ impl<'a> Turn<'a> {
         if self.accept(job, restart, seen).is_break() {
             return true;
         }
+        self.take_better_tree();
         let stop_reason = self.picture.as_ref().and_then(Picture::stop_reason);
         if let Some(reason) = stop_reason {
+            self.refiner.hold();
             self.publish_news();
             self.shared.set_state(SessionState::Finished(reason));
             return self.wait(seen);
         }
         if self.shared.is_paused() {
+            self.refiner.hold();
             self.publish_news();
             self.shared.set_state(SessionState::Paused);
             return self.wait(seen);
@@ -92,6 +98,7 @@ impl<'a> Turn<'a> {
     pub(super) fn recover(&mut self) {
         self.picture = None;
         self.scene = None;
+        self.refiner.reset(self.shared);
         self.has_news = false;
         self.workers = self.workers.resized(self.workers.threads());
         self.shared.update_status(|status| {
@@ -190,6 +197,7 @@ impl<'a> Turn<'a> {
 
     fn prepare(&mut self, job: &RenderJob, seen: u64) -> ControlFlow<()> {
         let shared = self.shared;
+        self.refiner.cancel(shared);
         // Another camera or size meanwhile does not make the work useless.
         let is_wanted = || {
             let wish = lock(&shared.wish);
@@ -218,6 +226,7 @@ impl<'a> Turn<'a> {
         let prepared = Arc::new(prepared);
         *lock(&shared.prepared) = Some(Arc::clone(&prepared));
         self.scene = Some(prepared);
+        self.refiner.reset(shared);
         self.rate = FIRST_RATE;
         shared.update_status(|status| {
             status.build_seconds = started.elapsed().as_secs_f64();
@@ -226,13 +235,23 @@ impl<'a> Turn<'a> {
         ControlFlow::Continue(())
     }
 
+    /// Swaps in the refined hierarchy when it is ready; the film goes on, for every ray has the
+    /// same hits.
+    fn take_better_tree(&mut self) {
+        if let Some(scene) = self.refiner.take(self.shared) {
+            let scene = Arc::new(scene);
+            *lock(&self.shared.prepared) = Some(Arc::clone(&scene));
+            self.scene = Some(scene);
+        }
+    }
+
     /// Some milliseconds to a fraction of a second of rendering.
     fn work(&mut self, seen: u64) {
         let (Some(scene), Some(picture)) = (&self.scene, &mut self.picture) else {
             return;
         };
-        self.shared.set_state(SessionState::Rendering);
         let shared = self.shared;
+        shared.set_state(SessionState::Rendering);
         let is_interrupted = || shared.interrupts.load(Ordering::Relaxed) != seen;
         if picture.job.settings.view.is_first_hit() {
             if let Some(snapshot) = picture.first_hit(&self.workers, scene, &is_interrupted) {
@@ -252,12 +271,13 @@ impl<'a> Turn<'a> {
                 return;
             }
         }
+        self.refiner.tend(shared, scene, picture);
         let every = PUBLISH_EVERY[usize::from(shared.options.interactive)]
             .max(self.publish_cost * PUBLISH_SHARE);
         let due = self.published + every;
         // Long passes are cut where the next snapshot is due; the film stays whole.
         picture.advance(&self.workers, scene, &|| {
-            is_interrupted() || Instant::now() >= due
+            is_interrupted() || self.refiner.has_news() || Instant::now() >= due
         });
         shared.update_status(|status| picture.describe(status));
         self.has_news = picture.has_samples();

@@ -2,7 +2,7 @@ use std::path::Path;
 
 use super::*;
 use glam::DVec3;
-use softbox::bvh::BvhKind;
+use softbox::bvh::{BvhKind, BvhQuality};
 use softbox::display::ToneCurve;
 use softbox::image::Region;
 use softbox::settings::{AdaptiveRule, CameraRule, IntegratorKind, MaxDepth, Mode, View};
@@ -141,7 +141,7 @@ fn render_takes_every_long_option() {
          --light-samples 2 --max-depth inf --only-last-bounce --mode importance \
          --integrator reference --adaptive 8,0.5 --adaptive-rule course --seed 42 \
          --time-limit 1.5 --target-error 0.01 --view normals --threads 3 --bvh median \
-         --leaf-size 8 --exposure -2.5 --tone-curve reinhard --camera-rule fit \
+         --leaf-size 8 --bvh-quality fast --exposure -2.5 --tone-curve reinhard --camera-rule fit \
          --eye -1,2,3 --target 0,-1,0 --up 0,0,1 --xfov 31 --lens-radius 0.1 \
          --focal-distance 2 --environment sky.hdr",
     );
@@ -157,6 +157,7 @@ fn render_takes_every_long_option() {
         (IntegratorKind::Reference, View::Normals)
     );
     assert_eq!((s.bvh.kind, s.bvh.leaf_size), (BvhKind::Median, 8));
+    assert_eq!(s.bvh.quality, BvhQuality::Fast);
     assert_eq!(
         (s.stop.samples_per_pixel, s.stop.seconds),
         (Some(9), Some(1.5))
@@ -206,6 +207,7 @@ fn wrong_usage_is_refused_with_a_reason() {
     assert!(wrong("softbox render x.dae").contains("--output"));
     assert!(wrong("softbox render -o a.png").contains("SCENE"));
     assert!(wrong("softbox render x -o a.png --mode worst").contains("hemisphere"));
+    assert!(wrong("softbox render x -o a.png --bvh-quality best").contains("standard"));
     assert!(wrong("softbox render x -o a.png --size 0x4").contains("0x4"));
     assert!(wrong("softbox render x -o a.png --spp 0").contains("spp"));
     assert!(wrong("softbox render x -o a.png --size 8x8 --region 8,0,4,4").contains("outside"));

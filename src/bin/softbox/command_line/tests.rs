@@ -2,7 +2,7 @@ use std::path::PathBuf;
 
 use super::*;
 use crate::args::{Request, parse};
-use softbox::bvh::{BvhKind, BvhSettings};
+use softbox::bvh::{BvhKind, BvhQuality, BvhSettings};
 use softbox::image::Region;
 use softbox::settings::{Adaptive, CameraRule, IntegratorKind, MaxDepth, Mode, StopRule, View};
 
@@ -43,6 +43,7 @@ fn unusual() -> Job {
             bvh: BvhSettings {
                 kind: BvhKind::Median,
                 leaf_size: 9,
+                quality: BvhQuality::Fast,
             },
             threads: 3,
             stop: StopRule {

@@ -1,7 +1,7 @@
 //! How the picture is computed.
 
 use eframe::egui::{self, DragValue, Slider, Ui};
-use softbox::bvh::BvhKind;
+use softbox::bvh::{BvhKind, BvhQuality, BvhSettings};
 use softbox::settings::{Adaptive, AdaptiveRule, IntegratorKind, MaxDepth, Mode, RenderSettings};
 
 use super::{choice, optional, row, section};
@@ -147,26 +147,44 @@ pub(in crate::viewer) fn machine(ui: &mut Ui, settings: &mut RenderSettings) {
                 IntegratorKind::Reference => "reference",
             },
         );
-        let kinds = [BvhKind::Sah, BvhKind::Median, BvhKind::None];
-        let help = "How the tree of boxes is split; without one, every ray meets every primitive.";
-        choice(
-            ui,
-            ("BVH", help),
-            &mut settings.bvh.kind,
-            &kinds,
-            |kind| match kind {
-                BvhKind::None => "none",
-                BvhKind::Median => "median",
-                BvhKind::Sah => "surface area",
-            },
-        );
-        row(
-            ui,
-            "Leaf size",
-            "Most primitives in one leaf of the tree.",
-            Slider::new(&mut settings.bvh.leaf_size, 1..=64).logarithmic(true),
-        );
+        hierarchy(ui, &mut settings.bvh);
     });
+}
+
+fn hierarchy(ui: &mut Ui, bvh: &mut BvhSettings) {
+    let kinds = [BvhKind::Sah, BvhKind::Median, BvhKind::None];
+    let help = "How the tree of boxes is split; without one, every ray meets every primitive.";
+    choice(
+        ui,
+        ("BVH", help),
+        &mut bvh.kind,
+        &kinds,
+        |kind| match kind {
+            BvhKind::None => "none",
+            BvhKind::Median => "median",
+            BvhKind::Sah => "surface area",
+        },
+    );
+    let qualities = [BvhQuality::High, BvhQuality::Standard, BvhQuality::Fast];
+    let help = "Effort for a tree split by surface area. High makes it better while the picture \
+                renders. Never changes the picture.";
+    choice(
+        ui,
+        ("BVH quality", help),
+        &mut bvh.quality,
+        &qualities,
+        |quality| match quality {
+            BvhQuality::Fast => "fast",
+            BvhQuality::Standard => "standard",
+            BvhQuality::High => "high",
+        },
+    );
+    row(
+        ui,
+        "Leaf size",
+        "Most primitives in one leaf of the tree.",
+        Slider::new(&mut bvh.leaf_size, 1..=64).logarithmic(true),
+    );
 }
 
 /// The size of the picture.

@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Grid, Ui};
 use softbox::bvh::BvhStats;
-use softbox::session::SessionStatus;
+use softbox::session::{SessionStatus, TreeState};
 
 use crate::viewer::latency::LatencySummary;
 
@@ -15,6 +15,9 @@ pub(in crate::viewer) fn show(
 ) {
     egui::CollapsingHeader::new("Statistics").show(ui, |ui| {
         let mut lines = render_facts(status);
+        if let TreeState::Refined { seconds } = status.tree {
+            lines.push(("Tree refined in", format!("{seconds:.3} s")));
+        }
         lines.extend(latency.map(|latency| ("Hand to picture", latency.to_string())));
         facts(ui, "render facts", &lines);
         if let Some(bvh) = bvh {

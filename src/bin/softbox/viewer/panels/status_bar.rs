@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, ProgressBar, Ui};
 use softbox::io::{ImportReport, Severity};
-use softbox::session::{SessionState, SessionStatus, StopReason};
+use softbox::session::{SessionState, SessionStatus, StopReason, TreeState};
 
 use super::statistics::count;
 use crate::viewer::command::Command;
@@ -48,6 +48,7 @@ impl StatusBar<'_> {
                 if let Some(report) = self.report {
                     show_report_badge(ui, report, commands);
                 }
+                show_tree(ui, self.status.tree);
                 if let Some(badge) = self.badge {
                     ui.colored_label(ui.visuals().warn_fg_color, badge);
                 }
@@ -140,6 +141,26 @@ fn show_report_badge(ui: &mut Ui, report: &ImportReport, commands: &mut Vec<Comm
             commands.push(Command::ToggleReport);
         }
     }
+}
+
+/// A word on a hierarchy that is being made better, and a mark when it is.
+fn show_tree(ui: &mut Ui, tree: TreeState) {
+    let (text, help) = match tree {
+        TreeState::AsBuilt => return,
+        TreeState::Refining { fraction } => (
+            format!("tree {:.0} %", fraction * 100.0),
+            "A better tree of boxes is in the making; the picture will go on faster with it.",
+        ),
+        TreeState::Refined { .. } => (
+            "tree refined".to_owned(),
+            "The better tree of boxes is in use.",
+        ),
+        TreeState::NotRefined => (
+            "tree not refined".to_owned(),
+            "A fault ended the making of a better tree of boxes; the picture is not affected.",
+        ),
+    };
+    ui.weak(text).on_hover_text(help);
 }
 
 fn show_added_light(ui: &mut Ui, commands: &mut Vec<Command>) {

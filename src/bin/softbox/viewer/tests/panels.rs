@@ -1,5 +1,7 @@
 use eframe::egui::accesskit::Role;
 use egui_kittest::kittest::Queryable;
+use softbox::bvh::BvhQuality;
+use softbox::session::TreeState;
 use softbox::settings::{MaxDepth, Mode, View};
 
 use super::*;
@@ -56,6 +58,34 @@ fn the_mode_is_chosen_from_a_list() {
     harness.get_by_label("hemisphere").click();
     harness.run_steps(2);
     assert_eq!(harness.state().document.settings.mode, Mode::Hemisphere);
+}
+
+#[test]
+fn the_quality_of_the_tree_is_chosen_and_its_refinement_shown() {
+    let mut options = small_options();
+    let settings = options.settings.as_mut().expect("small ones");
+    settings.stop.samples_per_pixel = None;
+    settings.bvh.quality = BvhQuality::Standard;
+    let mut harness = viewer_of(small_scene(), options);
+    wait(&mut harness, "samples", |app| {
+        app.engine.status().samples_mean >= 1.0
+    });
+    assert!(harness.query_by_label_contains("tree refined").is_none());
+    harness.get_by_label("Machine").click();
+    harness.run_steps(2);
+    harness
+        .get_by_role_and_label(Role::ComboBox, "BVH quality")
+        .click();
+    harness.run_steps(2);
+    harness.get_by_label("high").click();
+    harness.run_steps(2);
+    let quality = harness.state().document.settings.bvh.quality;
+    assert_eq!(quality, BvhQuality::High);
+    wait(&mut harness, "the better tree", |app| {
+        matches!(app.engine.status().tree, TreeState::Refined { .. })
+    });
+    harness.step();
+    harness.get_by_label("tree refined");
 }
 
 #[test]
