@@ -5,16 +5,15 @@
 
 use std::collections::HashMap;
 use std::ffi::{CString, c_char, c_int, c_uint, c_void};
-use std::ptr::null_mut;
 use std::sync::atomic::{AtomicIsize, Ordering};
 use std::sync::{Arc, Mutex};
 
 use clap::ValueEnum;
-use glam::Vec3;
 use libloading::{Library, Symbol};
 use softbox::geometry::{Hit, Shapes};
 use softbox::math::Ray;
 
+use crate::embree_query::{Arguments, COHERENT, Handle, RayHit, RayHit16};
 use crate::ray_bench::{Kind, System, Tracer};
 
 /// Names under which systems install the library.
@@ -25,8 +24,9 @@ const USUAL_NAMES: [&str; 4] = [
     "embree4.dll",
 ];
 
-/// `RTC_INVALID_GEOMETRY_ID`.
-const INVALID: u32 = u32::MAX;
+/// Name of the system that traces sixteen primary rays at a time.
+pub(crate) const PACKETS: &str = "embree-packets";
+
 /// `RTC_SCENE_FLAG_ROBUST`.
 const ROBUST: c_int = 4;
 /// `RTC_BUILD_QUALITY_MEDIUM`, the default.
@@ -39,93 +39,6 @@ const INDICES: (c_int, c_int) = (0, 0x5003);
 const VERTICES: (c_int, c_int) = (1, 0x9003);
 /// `RTC_DEVICE_PROPERTY_VERSION`.
 const VERSION: c_int = 0;
-/// `RTC_RAY_QUERY_FLAG_COHERENT`.
-const COHERENT: u32 = 1 << 16;
-
-/// A device, scene or geometry.
-type Handle = *mut c_void;
-
-/// `RTCRayHit`.
-#[repr(C, align(16))]
-struct RayHit {
-    origin: [f32; 3],
-    t_near: f32,
-    direction: [f32; 3],
-    time: f32,
-    t_far: f32,
-    mask: u32,
-    id: u32,
-    flags: u32,
-    normal: [f32; 3],
-    u: f32,
-    v: f32,
-    primitive: u32,
-    geometry: u32,
-    instance: [u32; 2],
-}
-
-impl RayHit {
-    fn new(ray: &Ray) -> Self {
-        Self {
-            origin: ray.origin.to_array(),
-            t_near: ray.t_min,
-            direction: ray.direction.to_array(),
-            time: 0.0,
-            t_far: ray.t_max,
-            mask: u32::MAX,
-            id: 0,
-            flags: 0,
-            normal: [0.0; 3],
-            u: 0.0,
-            v: 0.0,
-            primitive: INVALID,
-            geometry: INVALID,
-            instance: [INVALID; 2],
-        }
-    }
-
-    fn hit(&self) -> Hit {
-        match self.geometry {
-            INVALID => Hit::MISS,
-            _ => Hit {
-                t: self.t_far,
-                primitive: self.primitive,
-                b1: self.u,
-                b2: self.v,
-            },
-        }
-    }
-}
-
-/// `RTCRayHit16`: the fields of [`RayHit`], sixteen numbers each.
-#[repr(C, align(64))]
-struct RayHit16([[f32; 16]; 21]);
-
-/// `RTCIntersectArguments` and `RTCOccludedArguments`.
-#[repr(C)]
-struct Arguments {
-    flags: u32,
-    features: u32,
-    context: Handle,
-    filter: Handle,
-    function: Handle,
-    /// Fields that some builds of the library append.
-    rest: [u64; 4],
-}
-
-impl Arguments {
-    fn new(flags: u32) -> Self {
-        Self {
-            flags,
-            features: u32::MAX,
-            context: null_mut(),
-            filter: null_mut(),
-            function: null_mut(),
-            rest: [0; 4],
-        }
-    }
-}
-
 type OnMemory = unsafe extern "C" fn(*mut c_void, isize, bool) -> bool;
 type Trace1 = unsafe extern "C" fn(Handle, *mut RayHit, *mut Arguments);
 type Trace16 = unsafe extern "C" fn(*const i32, Handle, *mut RayHit16, *mut Arguments);
@@ -219,7 +132,7 @@ impl Embree {
         let all = Kind::value_variants();
         vec![
             self.system(crate::ray_bench::ANCHOR, all, plain),
-            self.system("embree-packets", &[Kind::Primary], packets),
+            self.system(PACKETS, &[Kind::Primary], packets),
             self.system("embree-robust", all, robust),
             self.system("embree-denormals", all, denormals),
         ]
@@ -391,27 +304,18 @@ impl Scene {
         let intersect = *self.device.embree.intersect16;
         let mut arguments = Arguments::new(COHERENT);
         for (rays, hits) in rays.chunks(16).zip(hits.chunks_mut(16)) {
-            let (valid, mut packet) = packet(rays);
-            // SAFETY: as for a single ray; `valid` and the packet are aligned to 64 bytes.
+            let (lanes, mut packet) = RayHit16::new(rays);
+            // SAFETY: as for a single ray; lanes and packet are aligned to 64 bytes.
             unsafe {
                 intersect(
-                    valid.0.as_ptr(),
+                    lanes.0.as_ptr(),
                     self.handle,
                     &raw mut packet,
                     &raw mut arguments,
                 );
             }
             for (i, hit) in hits.iter_mut().enumerate() {
-                let field = |field: usize| packet.0[field][i];
-                *hit = match field(18).to_bits() {
-                    INVALID => Hit::MISS,
-                    _ => Hit {
-                        t: field(8),
-                        primitive: field(17).to_bits(),
-                        b1: field(15),
-                        b2: field(16),
-                    },
-                };
+                *hit = packet.hit(i);
             }
         }
     }
@@ -423,35 +327,9 @@ impl Scene {
             let mut query = RayHit::new(ray);
             // SAFETY: a `RTCRayHit` starts with the `RTCRay` that is wanted here.
             unsafe { test(self.handle, &raw mut query, &raw mut arguments) };
-            *occluded = query.t_far < 0.0;
+            *occluded = query.t_far() < 0.0;
         }
     }
-}
-
-/// -1 for the lanes that hold a ray, else 0.
-#[repr(C, align(64))]
-struct Lanes([i32; 16]);
-
-fn packet(rays: &[Ray]) -> (Lanes, RayHit16) {
-    let mut valid = Lanes([0; 16]);
-    let mut packet = RayHit16([[0.0; 16]; 21]);
-    let all_ones = f32::from_bits(u32::MAX);
-    for (i, ray) in rays.iter().enumerate() {
-        valid.0[i] = -1;
-        let mut put = |field: usize, v: Vec3| {
-            for axis in 0..3 {
-                packet.0[field + axis][i] = v[axis];
-            }
-        };
-        put(0, ray.origin);
-        put(4, ray.direction);
-        packet.0[3][i] = ray.t_min;
-        packet.0[8][i] = ray.t_max;
-        packet.0[9][i] = all_ones;
-        packet.0[18][i] = all_ones;
-        packet.0[19][i] = all_ones;
-    }
-    (valid, packet)
 }
 
 impl Tracer for Scene {

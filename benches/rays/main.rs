@@ -21,6 +21,7 @@ mod bvh_crate;
     reason = "a C library is called, and its rounding mode set"
 )]
 mod embree;
+mod embree_query;
 mod leak;
 mod obvhs_crate;
 #[path = "../../src/bin/softbox/ray_bench/mod.rs"]

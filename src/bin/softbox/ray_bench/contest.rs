@@ -12,8 +12,8 @@ use super::{Exact, Protocol, Subject, System, Tracer, median};
 /// Rays that a thread takes at once, as a render does.
 const BATCH: usize = 4096;
 
-/// Wall seconds of one run or build from which on once is enough.
-const LONG: f64 = 4.0;
+/// A run or build of more wall seconds than this is not repeated.
+const LONG: f64 = 2.5;
 
 /// Builds and traces one subject with every system.
 ///
@@ -30,52 +30,66 @@ pub(crate) fn contest(subject: &Subject, systems: &[System], protocol: &Protocol
         builds: Vec::new(),
         traced: Vec::new(),
     };
-    let mut tracers = Vec::new();
-    for system in systems
-        .iter()
-        .filter(|s| sets.iter().any(|set| s.kinds.contains(&set.kind)))
-    {
-        let (tracer, builds) = build(&subject.shapes, system, protocol);
-        result.builds.extend(builds);
-        tracers.push((system, tracer));
-    }
+    let takes_part = |s: &&System| sets.iter().any(|set| s.kinds.contains(&set.kind));
+    let systems: Vec<&System> = systems.iter().filter(takes_part).collect();
+    let (tracers, builds) = build(&subject.shapes, &systems, protocol);
+    result.builds = builds;
     for set in &sets {
-        let competing = tracers
-            .iter()
-            .filter(|(system, _)| system.kinds.contains(&set.kind));
-        let competing: Vec<_> = competing.map(|(s, t)| (s.name.as_str(), &**t)).collect();
+        let competing = systems.iter().zip(&tracers);
+        let competing: Vec<_> = competing
+            .filter(|(system, _)| system.kinds.contains(&set.kind))
+            .map(|(system, tracer)| (system.name.as_str(), &**tracer))
+            .collect();
         result.traced.extend(trace(set, &competing, protocol));
     }
     result
 }
 
+/// Builds with every system in turn; gives the tracers that were built last.
 fn build(
     shapes: &Shapes,
-    system: &System,
+    systems: &[&System],
     protocol: &Protocol,
-) -> (Box<dyn Tracer>, Vec<BuildResult>) {
+) -> (Vec<Box<dyn Tracer>>, Vec<BuildResult>) {
+    let mut tracers: Vec<Option<Box<dyn Tracer>>> = systems.iter().map(|_| None).collect();
     let mut results = Vec::new();
-    let mut latest = None;
+    let anchor = anchor(systems.iter().map(|system| system.name.as_str()));
     for &threads in &protocol.threads {
-        let mut all: Vec<Taken> = Vec::new();
-        while all.len() < protocol.builds && all.first().is_none_or(|first| first.wall < LONG) {
-            drop(latest.take());
-            let prepared = system.prepare(shapes, threads);
-            let (built, taken) = of_process(prepared);
-            latest = Some(built);
-            all.push(taken);
+        let mut all: Vec<Vec<Taken>> = vec![Vec::new(); systems.len()];
+        for round in 0..protocol.builds {
+            for (i, system) in systems.iter().enumerate() {
+                if round > 0 && all[i][0].wall > LONG {
+                    continue;
+                }
+                tracers[i] = None;
+                let prepared = system.prepare(shapes, threads);
+                let (built, taken) = of_process(prepared);
+                tracers[i] = Some(built);
+                all[i].push(taken);
+            }
         }
-        let tracer = latest.as_ref().expect("built at least once");
-        results.push(BuildResult {
-            system: system.name.clone(),
-            threads,
-            processor_seconds: median(all.iter().map(|taken| taken.processor)),
-            wall_seconds: median(all.iter().map(|taken| taken.wall)),
-            bytes: tracer.bytes(),
-            sah_cost: tracer.sah_cost(),
-        });
+        for ((system, taken), tracer) in systems.iter().zip(&all).zip(tracers.iter().flatten()) {
+            results.push(BuildResult {
+                system: system.name.clone(),
+                threads,
+                processor_seconds: median(taken.iter().map(|taken| taken.processor)),
+                wall_seconds: median(taken.iter().map(|taken| taken.wall)),
+                ratio: anchor.map(|i| {
+                    let pairs = taken.iter().zip(&all[i]);
+                    median(pairs.map(|(taken, anchor)| anchor.processor / taken.processor))
+                }),
+                bytes: tracer.bytes(),
+                sah_cost: tracer.sah_cost(),
+            });
+        }
     }
-    (latest.expect("built for some number of threads"), results)
+    let tracers = tracers.into_iter().flatten().collect();
+    (tracers, results)
+}
+
+/// The place of the system that others are compared with.
+fn anchor<'a>(mut names: impl Iterator<Item = &'a str>) -> Option<usize> {
+    names.position(|name| name == super::ANCHOR)
 }
 
 fn trace(set: &RaySet, systems: &[(&str, &dyn Tracer)], protocol: &Protocol) -> Vec<RaysResult> {
@@ -102,7 +116,7 @@ fn trace(set: &RaySet, systems: &[(&str, &dyn Tracer)], protocol: &Protocol) -> 
                 walls[i].push(set.rays.len() as f64 / wall);
             }
         }
-        let anchor = systems.iter().position(|(name, _)| *name == super::ANCHOR);
+        let anchor = anchor(systems.iter().map(|(name, _)| *name));
         results.extend(
             (0..systems.len()).map(|i| RaysResult {
                 system: systems[i].0.to_owned(),

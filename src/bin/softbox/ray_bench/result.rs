@@ -24,6 +24,8 @@ pub(crate) struct BuildResult {
     pub(crate) threads: usize,
     pub(crate) processor_seconds: f64,
     pub(crate) wall_seconds: f64,
+    /// Speed by processor time, times that of the anchor in the same round; `None` without one.
+    pub(crate) ratio: Option<f64>,
     pub(crate) bytes: usize,
     pub(crate) sah_cost: Option<f64>,
 }

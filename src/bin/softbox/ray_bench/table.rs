@@ -28,7 +28,7 @@ pub(crate) fn write_table(out: &mut impl Write, result: &SceneResult) -> Result<
 fn write_builds(out: &mut impl Write, result: &SceneResult) -> Result<()> {
     writeln!(
         out,
-        "  build            threads    cpu s   wall s  Mtri/cpu s  Mtri/wall s  bytes/tri      SAH"
+        "  build            threads    cpu s   wall s  Mtri/cpu s          Mtri/wall s  bytes/tri      SAH"
     )?;
     let triangles = result.triangles as f64;
     for build in &result.builds {
@@ -37,13 +37,15 @@ fn write_builds(out: &mut impl Write, result: &SceneResult) -> Result<()> {
             threads,
             processor_seconds: cpu,
             wall_seconds: wall,
+            ratio,
             bytes,
             sah_cost,
         } = build;
+        let ratio = ratio.map_or(String::new(), |ratio| format!("x{ratio:.2}"));
         let sah = sah_cost.map_or("-".to_owned(), |cost| format!("{cost:.2}"));
         writeln!(
             out,
-            "  {system:<16} {threads:>7} {cpu:>8.4} {wall:>8.4} {:>11.2} {:>12.2} {:>10.1} {sah:>8}",
+            "  {system:<16} {threads:>7} {cpu:>8.4} {wall:>8.4} {:>11.2} {ratio:<7} {:>12.2} {:>10.1} {sah:>8}",
             triangles / cpu / 1e6,
             triangles / wall / 1e6,
             *bytes as f64 / triangles,
