@@ -12,8 +12,11 @@ use super::{Exact, Protocol, Subject, System, Tracer, median};
 /// Rays that a thread takes at once, as a render does.
 const BATCH: usize = 4096;
 
-/// A run or build of more wall seconds than this is not repeated.
-const LONG: f64 = 2.5;
+/// A run over a ray set that takes more wall seconds than this is not repeated.
+const LONG_RUN: f64 = 2.5;
+
+/// The same for builds, of which the first is often slower than the next.
+const LONG_BUILD: f64 = 8.0;
 
 /// Builds and traces one subject with every system.
 ///
@@ -58,7 +61,7 @@ fn build(
         let mut all: Vec<Vec<Taken>> = vec![Vec::new(); systems.len()];
         for round in 0..protocol.builds {
             for (i, system) in systems.iter().enumerate() {
-                if round > 0 && all[i][0].wall > LONG {
+                if round > 0 && all[i][0].wall > LONG_BUILD {
                     continue;
                 }
                 tracers[i] = None;
@@ -99,7 +102,7 @@ fn trace(set: &RaySet, systems: &[(&str, &dyn Tracer)], protocol: &Protocol) -> 
         .iter()
         .map(|(_, tracer)| {
             let taken = hits.trace(set, *tracer, 1);
-            (hits.mismatches(set), taken.wall > LONG)
+            (hits.mismatches(set), taken.wall > LONG_RUN)
         })
         .collect();
     let mut results = Vec::new();
