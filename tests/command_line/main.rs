@@ -1,5 +1,6 @@
 //! Drives the program itself: streams, exit statuses, files.
 
+mod bench;
 #[path = "../collada_text/mod.rs"]
 mod collada_text;
 mod compare;
@@ -88,6 +89,8 @@ fn wrong_usage_ends_with_status_2_and_help_with_0() {
         &["render", "x.dae", "-o", "a.png", "--no-such-option"],
         &["render", "x.dae", "-o", "a.png", "--max-depth", "-1"],
         &["compare", "a.exr"],
+        &["bench", "box36"],
+        &["bench", "--rays", "--rounds", "0", "box36"],
         &["-f", "a.png"],
         &["-f", "a.png", "-r", "480", "x.dae"],
     ] {

@@ -7,6 +7,7 @@ use softbox::settings::RenderSettings;
 
 use crate::course_args::CourseArgs;
 use crate::job::Job;
+use crate::ray_bench::Protocol;
 use crate::settings_args::SettingsArgs;
 
 /// Samples of `render` when no rule to stop is given.
@@ -35,6 +36,8 @@ pub(crate) enum Request {
     Info(InfoArgs),
     /// Compare two pictures.
     Compare(CompareArgs),
+    /// Measure the tracer.
+    Bench(BenchArgs),
 }
 
 /// A path tracer for the CPU: in a window, or headless.
@@ -55,6 +58,8 @@ enum Command {
     Info(InfoArgs),
     /// Compare a picture with a reference, on linear data
     Compare(CompareArgs),
+    /// Measure how fast scenes are built and rays are traced
+    Bench(BenchArgs),
 }
 
 /// Without a subcommand: the window, or with -f the course's form.
@@ -148,6 +153,23 @@ pub(crate) struct CompareArgs {
     pub(crate) json: bool,
 }
 
+/// `softbox bench`.
+#[derive(Args, Clone, Debug, PartialEq)]
+pub(crate) struct BenchArgs {
+    /// Measure build time and rays per second
+    #[arg(long, required = true)]
+    pub(crate) rays: bool,
+    /// Generated scenes (box36, ico10k, knot70k, dragon100k, slivers, city, ico1m, stadium, knot5m)
+    /// or scene files; without any, all the generated ones
+    #[arg(value_name = "SCENE")]
+    pub(crate) scenes: Vec<String>,
+    #[command(flatten)]
+    pub(crate) protocol: Protocol,
+    /// Print one JSON array on standard output, an object for each scene
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
 /// Reads a command line, its first word being the program's name.
 ///
 /// # Errors
@@ -160,6 +182,7 @@ pub(crate) fn parse(
         Some(Command::Render(args)) => render_request(*args),
         Some(Command::Info(args)) => Ok(Request::Info(args)),
         Some(Command::Compare(args)) => Ok(Request::Compare(args)),
+        Some(Command::Bench(args)) => Ok(Request::Bench(args)),
         None => plain_request(cli.plain),
     };
     request.map_err(|message| Cli::command().error(ErrorKind::ValueValidation, message))

@@ -1,6 +1,7 @@
 //! The program: `softbox [SCENE]` opens the window, everything else works without one.
 
 mod args;
+mod bench;
 mod command_line;
 mod compare;
 mod course_args;
@@ -13,6 +14,7 @@ mod open;
 mod place_camera;
 mod progress;
 mod provenance;
+mod ray_bench;
 mod render;
 mod report;
 mod settings_args;
@@ -52,5 +54,6 @@ fn run(request: Request) -> Result<(), Failure> {
         Request::Render(job, reporting) => render::run(&job, &reporting),
         Request::Info(info) => info::run(&info),
         Request::Compare(compare) => compare::run(&compare),
+        Request::Bench(bench) => bench::run(&bench),
     }
 }

@@ -220,3 +220,18 @@ fn wrong_usage_is_refused_with_a_reason() {
     assert!(wrong("softbox compare a.exr").contains("REFERENCE"));
     assert!(wrong("softbox --renderer metal").contains("wgpu"));
 }
+
+#[test]
+fn a_bench_says_what_it_measures() {
+    let Request::Bench(bench) = request("softbox bench --rays --kinds shadow1 city a.dae") else {
+        panic!("no bench");
+    };
+    assert_eq!(bench.scenes, ["city", "a.dae"]);
+    assert_eq!(bench.protocol.threads, [1, 2]);
+    assert_eq!(bench.protocol.size, (512, 384));
+    assert_eq!(bench.protocol.kinds, [crate::ray_bench::Kind::Shadow1]);
+    wrong("softbox bench city");
+    wrong("softbox bench --rays --threads 0");
+    wrong("softbox bench --rays --size 512");
+    wrong("softbox bench --rays --kinds bounce3");
+}

@@ -1,0 +1,216 @@
+use std::sync::{Barrier, Mutex};
+use std::thread;
+
+use softbox::bvh::BvhSettings;
+use softbox::geometry::{Aggregate, Hit, Shapes};
+
+use super::clock::{Taken, of_process, of_thread};
+use super::rays::{RaySet, ray_sets};
+use super::result::{BuildResult, Mismatches, RaysResult, SceneResult};
+use super::{Exact, Protocol, Subject, System, Tracer, median};
+
+/// Rays that a thread takes at once, as a render does.
+const BATCH: usize = 4096;
+
+/// A run over a ray set that takes more wall seconds than this is not repeated.
+const LONG_RUN: f64 = 2.5;
+
+/// The same for builds, of which the first is often slower than the next.
+const LONG_BUILD: f64 = 8.0;
+
+/// Builds and traces one subject with every system.
+///
+/// In each round every system traces the same rays in turn, so that what disturbs the machine
+/// disturbs all of them. Ratios are medians of ratios within a round.
+pub(crate) fn contest(subject: &Subject, systems: &[System], protocol: &Protocol) -> SceneResult {
+    let aggregate = Aggregate::build(subject.shapes.clone(), BvhSettings::default());
+    let sets = ray_sets(subject, &Exact(&aggregate), protocol.size, &protocol.kinds);
+    drop(aggregate);
+    let mut result = SceneResult {
+        scene: subject.name.clone(),
+        triangles: subject.shapes.triangles.len(),
+        rays: sets.iter().map(|set| (set.kind, set.rays.len())).collect(),
+        builds: Vec::new(),
+        traced: Vec::new(),
+    };
+    let takes_part = |s: &&System| sets.iter().any(|set| s.kinds.contains(&set.kind));
+    let systems: Vec<&System> = systems.iter().filter(takes_part).collect();
+    let (tracers, builds) = build(&subject.shapes, &systems, protocol);
+    result.builds = builds;
+    for set in &sets {
+        let competing = systems.iter().zip(&tracers);
+        let competing: Vec<_> = competing
+            .filter(|(system, _)| system.kinds.contains(&set.kind))
+            .map(|(system, tracer)| (system.name.as_str(), &**tracer))
+            .collect();
+        result.traced.extend(trace(set, &competing, protocol));
+    }
+    result
+}
+
+/// Builds with every system in turn; gives the tracers that were built last.
+fn build(
+    shapes: &Shapes,
+    systems: &[&System],
+    protocol: &Protocol,
+) -> (Vec<Box<dyn Tracer>>, Vec<BuildResult>) {
+    let mut tracers: Vec<Option<Box<dyn Tracer>>> = systems.iter().map(|_| None).collect();
+    let mut results = Vec::new();
+    let anchor = anchor(systems.iter().map(|system| system.name.as_str()));
+    for &threads in &protocol.threads {
+        let mut all: Vec<Vec<Taken>> = vec![Vec::new(); systems.len()];
+        for round in 0..protocol.builds {
+            for (i, system) in systems.iter().enumerate() {
+                if round > 0 && all[i][0].wall > LONG_BUILD {
+                    continue;
+                }
+                tracers[i] = None;
+                let prepared = system.prepare(shapes, threads);
+                let (built, taken) = of_process(prepared);
+                tracers[i] = Some(built);
+                all[i].push(taken);
+            }
+        }
+        for ((system, taken), tracer) in systems.iter().zip(&all).zip(tracers.iter().flatten()) {
+            results.push(BuildResult {
+                system: system.name.clone(),
+                threads,
+                processor_seconds: median(taken.iter().map(|taken| taken.processor)),
+                wall_seconds: median(taken.iter().map(|taken| taken.wall)),
+                ratio: anchor.map(|i| {
+                    let pairs = taken.iter().zip(&all[i]);
+                    median(pairs.map(|(taken, anchor)| anchor.processor / taken.processor))
+                }),
+                bytes: tracer.bytes(),
+                sah_cost: tracer.sah_cost(),
+            });
+        }
+    }
+    let tracers = tracers.into_iter().flatten().collect();
+    (tracers, results)
+}
+
+/// The place of the system that others are compared with.
+fn anchor<'a>(mut names: impl Iterator<Item = &'a str>) -> Option<usize> {
+    names.position(|name| name == super::ANCHOR)
+}
+
+fn trace(set: &RaySet, systems: &[(&str, &dyn Tracer)], protocol: &Protocol) -> Vec<RaysResult> {
+    let mut hits = Hits::new(set);
+    // A first run, not timed but for whether it is long, fills the caches and is checked.
+    let first: Vec<(Mismatches, bool)> = systems
+        .iter()
+        .map(|(_, tracer)| {
+            let taken = hits.trace(set, *tracer, 1);
+            (hits.mismatches(set), taken.wall > LONG_RUN)
+        })
+        .collect();
+    let mut results = Vec::new();
+    for &threads in &protocol.threads {
+        let mut rates = vec![Vec::new(); systems.len()];
+        let mut walls = vec![Vec::new(); systems.len()];
+        for round in 0..protocol.rounds {
+            for (i, (_, tracer)) in systems.iter().enumerate() {
+                if round > 0 && first[i].1 {
+                    continue;
+                }
+                let Run { rate, wall } = hits.trace(set, *tracer, threads);
+                rates[i].push(rate);
+                walls[i].push(set.rays.len() as f64 / wall);
+            }
+        }
+        let anchor = anchor(systems.iter().map(|(name, _)| *name));
+        results.extend(
+            (0..systems.len()).map(|i| RaysResult {
+                system: systems[i].0.to_owned(),
+                kind: set.kind,
+                threads,
+                rays_per_second: median(rates[i].iter().copied()),
+                rays_per_wall_second: median(walls[i].iter().copied()),
+                ratio: anchor
+                    .map(|anchor| median(rates[i].iter().zip(&rates[anchor]).map(|(a, b)| a / b))),
+                mismatches: first[i].0,
+            }),
+        );
+    }
+    results
+}
+
+/// What one run over a ray set gave.
+struct Run {
+    /// Rays per second of processor time, times the threads.
+    rate: f64,
+    wall: f64,
+}
+
+/// The buffers that all systems write.
+struct Hits {
+    closest: Vec<Hit>,
+    occluded: Vec<bool>,
+}
+
+impl Hits {
+    fn new(set: &RaySet) -> Self {
+        let rays = set.rays.len();
+        let is_shadow = set.kind.is_shadow();
+        Self {
+            closest: vec![Hit::MISS; if is_shadow { 0 } else { rays }],
+            occluded: vec![false; if is_shadow { rays } else { 0 }],
+        }
+    }
+
+    fn trace(&mut self, set: &RaySet, tracer: &dyn Tracer, threads: usize) -> Run {
+        let batches = set.rays.chunks(BATCH);
+        if set.kind.is_shadow() {
+            let work = batches.zip(self.occluded.chunks_mut(BATCH));
+            run(work, threads, |(rays, out)| {
+                tracer.any_hit(rays, out);
+                rays.len()
+            })
+        } else {
+            let work = batches.zip(self.closest.chunks_mut(BATCH));
+            run(work, threads, |(rays, out)| {
+                tracer.closest_hit(rays, out);
+                rays.len()
+            })
+        }
+    }
+
+    fn mismatches(&self, set: &RaySet) -> Mismatches {
+        if set.kind.is_shadow() {
+            Mismatches::of_any(&set.expected, &self.occluded)
+        } else {
+            Mismatches::of_closest(&set.expected, &self.closest)
+        }
+    }
+}
+
+/// Lets `threads` threads take batches until none are left; `trace` gives the number of rays of one.
+fn run<B: Send>(
+    batches: impl Iterator<Item = B> + Send,
+    threads: usize,
+    trace: impl Fn(B) -> usize + Sync,
+) -> Run {
+    let queue = Mutex::new(batches);
+    let next = || queue.lock().expect("no thread panics with the lock").next();
+    let start = Barrier::new(threads);
+    let work = || {
+        start.wait();
+        let work = || std::iter::from_fn(next).map(&trace).sum::<usize>();
+        of_thread(work)
+    };
+    let (done, taken) = of_process(|| {
+        thread::scope(|scope| {
+            let workers: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
+            let done = workers.into_iter().map(|worker| worker.join());
+            done.map(|done| done.expect("tracing does not panic"))
+                .collect::<Vec<_>>()
+        })
+    });
+    let rays: usize = done.iter().map(|(rays, _)| rays).sum();
+    let processor: f64 = done.iter().map(|(_, taken)| taken.processor).sum();
+    Run {
+        rate: (rays * threads) as f64 / processor,
+        wall: taken.wall,
+    }
+}
