@@ -56,6 +56,19 @@ impl Block {
         Vec4::from_array(self.corners[corner][axis])
     }
 
+    /// Normals of all triangles, not of unit length, in the order of `axes`, an even permutation.
+    #[inline(always)]
+    pub(super) fn normals(&self, axes: [u8; 3]) -> [Vec4; 3] {
+        let edge = |corner: usize, axis: u8| {
+            let axis = usize::from(axis);
+            self.coordinate(corner, axis) - self.coordinate(0, axis)
+        };
+        let [x, y, z] = axes;
+        let (ax, ay, az) = (edge(1, x), edge(1, y), edge(1, z));
+        let (bx, by, bz) = (edge(2, x), edge(2, y), edge(2, z));
+        [ay * bz - by * az, az * bx - bz * ax, ax * by - bx * ay]
+    }
+
     /// Minimum and maximum per axis of all triangles.
     #[inline(always)]
     pub(super) fn bounds(&self) -> [[Vec4; 2]; 3] {

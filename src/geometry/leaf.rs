@@ -109,14 +109,18 @@ impl Query {
     fn triangles(&mut self, (ray, slab): (&Ray, &SlabRay), block: &Block) {
         let edges = self.shear.edges(slab.origin(), block);
         let on_edge = edges.on_edge();
-        let (t, b1, b2) = self.shear.hits(&edges);
-        let possible = t.cmpgt(Vec4::splat(slab.t_min()))
-            & t.cmplt(Vec4::splat(slab.t_max()))
-            & t.cmple(Vec4::splat(self.hit.t));
-        let mut met = (edges.inside() & possible).bitmask() & !on_edge;
+        let inside = edges.inside().bitmask() & !on_edge;
         if on_edge != 0 {
             self.triangles_on_edges((ray, slab), block, on_edge);
         }
+        if inside == 0 {
+            return;
+        }
+        let (t, b1, b2) = self.shear.hits(&edges, block);
+        let possible = t.cmpgt(Vec4::splat(slab.t_min()))
+            & t.cmplt(Vec4::splat(slab.t_max()))
+            & t.cmple(Vec4::splat(self.hit.t));
+        let mut met = inside & possible.bitmask();
         if met == 0 {
             return;
         }

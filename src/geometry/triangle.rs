@@ -23,13 +23,13 @@ pub(super) struct TriangleHit {
     pub(super) b2: f32,
 }
 
-/// Edge functions of four triangles, and the depths of their vertices along the sheared axis.
+/// Edge functions of four triangles, and their first vertices seen from the ray's origin.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Edges {
     u: Vec4,
     v: Vec4,
     w: Vec4,
-    depths: [Vec4; 3],
+    first: [Vec4; 3],
 }
 
 impl Edges {
@@ -79,46 +79,56 @@ impl Shear {
     /// slips through between two triangles. Nothing depends on hits found before.
     #[inline(always)]
     pub(super) fn edges(&self, origin: &[f32; 4], block: &Block) -> Edges {
-        let a = self.corner(origin, block, 0);
-        let b = self.corner(origin, block, 1);
-        let c = self.corner(origin, block, 2);
+        let (a, first) = self.corner(origin, block, 0);
+        let (b, _) = self.corner(origin, block, 1);
+        let (c, _) = self.corner(origin, block, 2);
         Edges {
             u: c.0 * b.1 - c.1 * b.0,
             v: a.0 * c.1 - a.1 * c.0,
             w: b.0 * a.1 - b.1 * a.0,
-            depths: [a.2, b.2, c.2],
+            first,
         }
     }
 
-    /// One vertex of four triangles in the sheared space.
+    /// One vertex of four triangles seen from the origin, sheared and as it is.
     #[inline(always)]
-    fn corner(&self, origin: &[f32; 4], block: &Block, corner: usize) -> (Vec4, Vec4, Vec4) {
+    fn corner(&self, origin: &[f32; 4], block: &Block, corner: usize) -> ((Vec4, Vec4), [Vec4; 3]) {
         let at = |axis: u8| {
             let axis = usize::from(axis);
             block.coordinate(corner, axis) - Vec4::splat(origin[axis % 4])
         };
         let [x, y, z] = self.axes;
         let (x, y, z) = (at(x), at(y), at(z));
-        (x - Vec4::splat(self.x) * z, y - Vec4::splat(self.y) * z, z)
+        let sheared = (x - Vec4::splat(self.x) * z, y - Vec4::splat(self.y) * z);
+        (sheared, [x, y, z])
     }
 
-    /// Ray parameters and weights of the second and third vertex, of the triangles that are met.
+    /// Ray parameters, and weights of the second and third vertex, of the triangles that are met.
+    ///
+    /// The parameter is that of the triangle's plane: a large triangle that is near has vertices
+    /// that are far, and their depths would not give it as well.
     #[inline(always)]
-    pub(super) fn hits(&self, edges: &Edges) -> (Vec4, Vec4, Vec4) {
-        let Edges { u, v, w, depths } = *edges;
+    pub(super) fn hits(&self, edges: &Edges, block: &Block) -> (Vec4, Vec4, Vec4) {
+        let Edges { u, v, w, first } = *edges;
+        let normal = block.normals(self.axes);
+        let distance = normal[0] * first[0] + normal[1] * first[1] + normal[2] * first[2];
+        let slope = normal[0] * Vec4::splat(self.x) + normal[1] * Vec4::splat(self.y) + normal[2];
         let inverse = Vec4::ONE / (u + v + w);
-        let t = u * depths[0] + v * depths[1] + w * depths[2];
-        (t * Vec4::splat(self.z) * inverse, v * inverse, w * inverse)
+        (
+            distance / slope * Vec4::splat(self.z),
+            v * inverse,
+            w * inverse,
+        )
     }
 
     /// Meets both sides of one triangle: the same as [`Self::edges`] and [`Self::hits`], but an edge
     /// function of zero is computed again with exact products.
     pub(super) fn meet(&self, origin: Vec3, vertices: &[Vec3; 3]) -> Option<TriangleHit> {
         let axes = self.axes.map(usize::from);
+        let permuted = |v: Vec3| Vec3::from_array(axes.map(|axis| v[axis]));
         let corners = vertices.map(|vertex| {
-            let v = vertex - origin;
-            let (x, y, z) = (v[axes[0]], v[axes[1]], v[axes[2]]);
-            (x - self.x * z, y - self.y * z, z)
+            let v = permuted(vertex - origin);
+            (v.x - self.x * v.z, v.y - self.y * v.z)
         });
         let [a, b, c] = corners;
         let mut u = c.0 * b.1 - c.1 * b.0;
@@ -134,9 +144,14 @@ impl Shear {
         if det == 0.0 {
             return None;
         }
+        let [first, second, third] = vertices.map(permuted);
+        let normal = (second - first).cross(third - first);
+        let first = permuted(vertices[0] - origin);
+        let distance = normal.x * first.x + normal.y * first.y + normal.z * first.z;
+        let slope = normal.x * self.x + normal.y * self.y + normal.z;
         let inverse = 1.0 / det;
         Some(TriangleHit {
-            t: (u * a.2 + v * b.2 + w * c.2) * self.z * inverse,
+            t: distance / slope * self.z,
             b1: v * inverse,
             b2: w * inverse,
         })
@@ -145,8 +160,8 @@ impl Shear {
 
 /// The edge functions with exact products: zero only where the ray meets the sheared edge.
 #[cold]
-fn exact_edges(corners: [(f32, f32, f32); 3]) -> (f32, f32, f32) {
-    let [a, b, c] = corners.map(|(x, y, _)| (f64::from(x), f64::from(y)));
+fn exact_edges(corners: [(f32, f32); 3]) -> (f32, f32, f32) {
+    let [a, b, c] = corners.map(|(x, y)| (f64::from(x), f64::from(y)));
     (
         (c.0 * b.1 - c.1 * b.0) as f32,
         (a.0 * c.1 - a.1 * c.0) as f32,

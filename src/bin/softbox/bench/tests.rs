@@ -87,7 +87,10 @@ fn double_precision_needs_no_tree() {
         .map(|_| Ray::new(random.direction() * 0.8, random.direction()))
         .collect();
     let hits = |kind| {
-        let settings = BvhSettings { kind, leaf_size: 4 };
+        let settings = BvhSettings {
+            kind,
+            ..BvhSettings::default()
+        };
         Exact(&Aggregate::build(shapes.clone(), settings)).closest_hits(&rays)
     };
     let (all, by_tree) = (hits(BvhKind::None), hits(BvhKind::Sah));
