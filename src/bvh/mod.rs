@@ -8,14 +8,12 @@
 //! ray meets the primitive's own padded box, and never reports it in front of that box
 //! ([`SlabRay::enter`]), gets the same answer from every tree, bit for bit.
 
+mod blocks;
 mod build;
-mod collapse;
 mod leaves;
 mod node;
 mod octant;
-mod pair;
-mod range;
-mod sah;
+mod quality;
 mod settings;
 mod simd;
 mod single;
@@ -26,7 +24,9 @@ mod stream;
 mod traverse;
 mod tree;
 
+pub use build::Progress;
 pub use leaves::{Leaves, Work};
+pub use quality::BvhQuality;
 pub use settings::{BvhKind, BvhSettings};
 pub use simd::prefetch;
 pub use slab::{SlabRay, T_FAR, padded};

@@ -1,9 +1,9 @@
 use std::ops::ControlFlow;
 
 use super::block::{Block, ID_LIMIT};
-use super::leaf::{LeafOrder, boxes};
+use super::leaf::{LeafOrder, bounds};
 use super::{Hit, Shapes};
-use crate::bvh::{BLOCK, Bvh, BvhSettings, BvhStats, NodeId};
+use crate::bvh::{BLOCK, Bvh, BvhQuality, BvhSettings, BvhStats, NodeId};
 use crate::math::{Isa, Ray};
 
 /// Work done by traversal.
@@ -46,7 +46,9 @@ impl Aggregate {
         progress: &(dyn Fn(f32) -> ControlFlow<()> + Sync),
     ) -> Option<Self> {
         assert!(shapes.len() < ID_LIMIT as usize, "too many primitives");
-        let (bvh, ids) = Bvh::build_with(&boxes(&shapes), &settings, progress)?;
+        let bounds = |id| bounds(&shapes, id);
+        let quality = BvhQuality::Standard;
+        let (bvh, ids) = Bvh::build_with(shapes.len(), &bounds, &settings, quality, progress)?;
         let leaves = LeafOrder::new(&shapes, &bvh, &ids);
         Some(Self {
             shapes,
