@@ -70,7 +70,8 @@ impl<const N: usize> Bins<N> {
             for axis in 0..3 {
                 let cell = cells[axis].to_bits() as usize % N;
                 bins.bounds[axis][cell].grow(r.min, r.max);
-                bins.counts[axis][cell] += 1;
+                let count = &mut bins.counts[axis][cell];
+                *count = count.wrapping_add(1);
             }
         }
         bins

@@ -40,7 +40,11 @@ pub(super) fn build(
 ) -> Option<Subtree> {
     let count = range.len();
     if count <= SERIAL || rule.is_leaf(count) {
-        let mut chunk = Chunk::default();
+        // Rarely fewer than these; freed as soon as the chunk is copied.
+        let mut chunk = Chunk {
+            nodes: Vec::with_capacity(count / 12 + 1),
+            blocks: Vec::with_capacity(count / 3 + 1),
+        };
         let root = chunk.add(range, rule, depth, 0);
         watch.advance(count)?;
         return Some(Subtree::Chunk { chunk, root });
