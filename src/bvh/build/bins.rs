@@ -143,7 +143,7 @@ impl Split {
     ///
     /// Wald 2007, "On fast Construction of SAH-based Bounding Volume Hierarchies".
     pub(super) fn find(refs: &[PrimitiveRef], centers: &Bounds, shift: u32) -> Option<Self> {
-        if refs.len() <= 16 {
+        if refs.len() <= 32 {
             Self::find_among::<8>(refs, centers, shift)
         } else {
             Self::find_among::<16>(refs, centers, shift)
