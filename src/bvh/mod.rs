@@ -10,6 +10,7 @@
 
 mod blocks;
 mod build;
+mod expected;
 mod leaves;
 mod node;
 mod octant;

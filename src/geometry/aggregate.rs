@@ -47,7 +47,11 @@ impl Aggregate {
     ) -> Option<Self> {
         assert!(shapes.len() < ID_LIMIT as usize, "too many primitives");
         let bounds = |id| bounds(&shapes, id);
-        let quality = BvhQuality::Standard;
+        let quality = if std::env::var("HIGH").is_ok() {
+            BvhQuality::High
+        } else {
+            BvhQuality::Standard
+        };
         let (bvh, ids) = Bvh::build_with(shapes.len(), &bounds, &settings, quality, progress)?;
         let leaves = LeafOrder::new(&shapes, &bvh, &ids);
         Some(Self {

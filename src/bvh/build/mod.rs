@@ -1,10 +1,15 @@
 //! Makes a tree of boxes, top down: ranges of primitives are split by the surface-area heuristic
 //! straight into nodes of eight children; there is no binary tree in between.
 
+mod binary;
 mod bins;
+mod chunk;
 mod family;
+mod high;
+mod optimal;
 mod primitive;
 mod range;
+mod reinsert;
 mod watch;
 mod wide;
 
@@ -13,14 +18,14 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 
+use self::chunk::Chunk;
 use self::primitive::PrimitiveRef;
 use self::range::{Depth, Range, Rule};
 use self::watch::Watch;
-use self::wide::Chunk;
-use super::BvhSettings;
 use super::node::WideNode;
 use super::quality::BvhQuality;
 use super::tree::{Bvh, LeafBlocks};
+use super::{BvhKind, BvhSettings};
 use crate::math::Aabb;
 
 pub use self::watch::Progress;
@@ -69,13 +74,19 @@ impl Bvh {
 fn build(
     mut refs: Vec<PrimitiveRef>,
     settings: &BvhSettings,
-    _quality: BvhQuality,
+    quality: BvhQuality,
     progress: &Progress<'_>,
 ) -> Option<Chunk> {
     if refs.par_iter().any(PrimitiveRef::is_nothing) {
         refs.retain(|r| !r.is_nothing());
     }
-    let watch = Watch::new(refs.len(), progress);
+    let is_high = quality == BvhQuality::High && settings.kind == BvhKind::Sah;
+    let work = if is_high {
+        high::work(refs.len())
+    } else {
+        refs.len()
+    };
+    let watch = Watch::new(work, progress);
     watch.advance(0)?;
     let mut whole = Chunk::default();
     if refs.is_empty() {
@@ -83,9 +94,19 @@ fn build(
     }
     let nothing = (0..refs.len()).into_par_iter();
     let mut spare: Vec<_> = nothing.map(|_| PrimitiveRef::NOTHING).collect();
-    let range = Range::new(&mut refs, &mut spare);
-    let tree = wide::build(range, &Rule::new(settings), Depth::default(), &watch)?;
-    let root = whole.append_subtree(tree, 0);
+    let mut tree = None;
+    if is_high {
+        let leaf_size = settings.leaf_size.clamp(1, 255);
+        tree = high::build(Range::new(&mut refs, &mut spare), leaf_size, &watch)?;
+    }
+    let tree = match tree {
+        Some(tree) => tree,
+        None => {
+            let range = Range::new(&mut refs, &mut spare);
+            wide::build(range, &Rule::new(settings), Depth::default(), &watch)?
+        }
+    };
+    let root = whole.append(tree, 0);
     if whole.nodes.is_empty() {
         whole.nodes.push(WideNode::new(&[root], &[], 0));
     }

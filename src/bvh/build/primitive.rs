@@ -21,6 +21,7 @@ impl Bounds {
         self.max = self.max.max(max);
     }
 
+    #[inline(always)]
     pub(super) fn union(mut self, other: &Self) -> Self {
         self.grow(other.min, other.max);
         self
@@ -44,7 +45,7 @@ impl Bounds {
 
 /// Bit of an id that is flipped where it is held as a float, so that it is not a denormal number,
 /// which processors are slow with.
-const NORMAL: u32 = 1 << 30;
+pub(super) const NORMAL: u32 = 1 << 30;
 
 /// A primitive on its way into the tree: its bounds, and its id in the fourth lane of the minimum.
 #[derive(Clone, Copy, Debug)]
@@ -68,6 +69,22 @@ impl PrimitiveRef {
         Self {
             min: bounds.min.extend(f32::from_bits(id ^ NORMAL)),
             max: bounds.max.extend(0.0),
+        }
+    }
+
+    /// Something numbered `id` with a box that is known to be finite.
+    pub(super) fn of_bounds(id: u32, bounds: &Bounds) -> Self {
+        Self {
+            min: bounds.min.truncate().extend(f32::from_bits(id ^ NORMAL)),
+            max: bounds.max.truncate().extend(0.0),
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn bounds(&self) -> Bounds {
+        Bounds {
+            min: self.min,
+            max: self.max,
         }
     }
 

@@ -38,6 +38,13 @@ pub(super) enum Plan {
 }
 
 impl Rule {
+    /// Down to single primitives.
+    pub(super) const SINGLE: Self = Self {
+        kind: BvhKind::Sah,
+        leaf_size: 1,
+        shift: 0,
+    };
+
     pub(super) fn new(settings: &BvhSettings) -> Self {
         let leaf_size = settings.leaf_size.clamp(1, 255) as usize;
         Self {
