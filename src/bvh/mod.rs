@@ -8,14 +8,12 @@
 //! ray meets the primitive's own padded box, and never reports it in front of that box
 //! ([`SlabRay::enter`]), gets the same answer from every tree, bit for bit.
 
+mod blocks;
 mod build;
-mod collapse;
+mod expected;
 mod leaves;
 mod node;
 mod octant;
-mod pair;
-mod range;
-mod sah;
 mod settings;
 mod simd;
 mod single;
@@ -26,6 +24,7 @@ mod stream;
 mod traverse;
 mod tree;
 
+pub use build::Progress;
 pub use leaves::{Leaves, Work};
 pub use settings::{BvhKind, BvhQuality, BvhSettings};
 pub use slab::{SlabRay, T_FAR, padded};

@@ -171,21 +171,36 @@ fn slots(children: &[Child]) -> [usize; WIDTH] {
             };
         }
     }
-    let mut slots = [0; WIDTH];
+    let mut slots = [WIDTH; WIDTH];
+    let mut best = [(f32::NEG_INFINITY, WIDTH); WIDTH];
+    for (best, row) in best.iter_mut().zip(&out).take(children.len()) {
+        *best = largest(row);
+    }
     for _ in 0..children.len() {
-        let (mut best, mut child, mut slot) = (f32::NEG_INFINITY, 0, 0);
-        for (i, row) in out.iter().enumerate() {
-            for (s, &value) in row.iter().enumerate() {
-                if value > best {
-                    (best, child, slot) = (value, i, s);
-                }
+        let (child, &(_, slot)) = (best.iter().enumerate())
+            .reduce(|a, b| if b.1.0 > a.1.0 { b } else { a })
+            .expect("eight rows");
+        slots[child] = slot;
+        best[child].0 = f32::NEG_INFINITY;
+        for (i, row) in out.iter_mut().enumerate().take(children.len()) {
+            row[slot] = f32::NEG_INFINITY;
+            if best[i].1 == slot && slots[i] == WIDTH {
+                best[i] = largest(row);
             }
         }
-        slots[child] = slot;
-        out[child] = [f32::NEG_INFINITY; WIDTH];
-        out.iter_mut().for_each(|row| row[slot] = f32::NEG_INFINITY);
     }
     slots
+}
+
+/// The largest number and its place, the first of several.
+fn largest(row: &[f32; WIDTH]) -> (f32, usize) {
+    let mut best = (f32::NEG_INFINITY, 0);
+    for (place, &value) in row.iter().enumerate() {
+        if value > best.0 {
+            best = (value, place);
+        }
+    }
+    best
 }
 
 #[cfg(test)]

@@ -2,8 +2,10 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::build::NODE_COST;
 use super::tree::Bvh;
+
+/// Cost of visiting an inner node of the binary tree, in units of testing one primitive.
+const NODE_COST: f32 = 2.0;
 
 /// Shape and cost of a tree.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]

@@ -2,10 +2,10 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use super::block::{Block, ID_LIMIT};
-use super::leaf::{LeafOrder, boxes};
+use super::leaf::{LeafOrder, bounds};
 use super::refine::refine;
 use super::{Hit, Shapes};
-use crate::bvh::{BLOCK, Bvh, BvhSettings, BvhStats, NodeId};
+use crate::bvh::{BLOCK, Bvh, BvhQuality, BvhSettings, BvhStats, NodeId};
 use crate::math::{Isa, Ray};
 
 /// Work done by traversal.
@@ -30,6 +30,7 @@ pub struct Aggregate {
     shapes: Arc<Shapes>,
     bvh: Bvh,
     leaves: LeafOrder,
+    leaf_size: u32,
     isa: Isa,
 }
 
@@ -41,19 +42,30 @@ impl Aggregate {
     }
 
     /// Like [`Self::build`]; reports the finished fraction (0 to 1, from any thread, not in order)
-    /// to `progress`, which may stop the build. `None` if it did.
+    /// to `progress`, which may stop the build. `None` if it did. High quality begins with the
+    /// standard tree; see [`Self::refined`].
     pub fn build_with(
         shapes: Shapes,
         settings: BvhSettings,
         progress: &(dyn Fn(f32) -> ControlFlow<()> + Sync),
     ) -> Option<Self> {
         assert!(shapes.len() < ID_LIMIT as usize, "too many primitives");
-        let (bvh, ids) = Bvh::build_with(&boxes(&shapes), &settings, progress)?;
+        let bounds = |id| bounds(&shapes, id);
+        let first = match settings.quality {
+            BvhQuality::High => BvhQuality::Standard,
+            quality => quality,
+        };
+        let first = BvhSettings {
+            quality: first,
+            ..settings
+        };
+        let (bvh, ids) = Bvh::build_with(shapes.len(), &bounds, &first, progress)?;
         let leaves = LeafOrder::new(&shapes, &bvh, &ids);
         Some(Self {
             shapes: Arc::new(shapes),
             bvh,
             leaves,
+            leaf_size: settings.leaf_size,
             isa: Isa::best(),
         })
     }
@@ -61,12 +73,13 @@ impl Aggregate {
     /// Another hierarchy over the same (shared) shapes that costs rays less and takes longer to
     /// make; `progress` as in [`Self::build_with`].
     pub fn refined(&self, progress: &(dyn Fn(f32) -> ControlFlow<()> + Sync)) -> Option<Self> {
-        let (bvh, ids) = refine(&self.shapes, progress)?;
+        let (bvh, ids) = refine(&self.shapes, self.leaf_size, progress)?;
         let leaves = LeafOrder::new(&self.shapes, &bvh, &ids);
         Some(Self {
             shapes: Arc::clone(&self.shapes),
             bvh,
             leaves,
+            leaf_size: self.leaf_size,
             isa: self.isa,
         })
     }

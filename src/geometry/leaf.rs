@@ -3,7 +3,7 @@ use glam::Vec4;
 use super::block::Block;
 use super::triangle::{self, Shear};
 use super::{Hit, Shapes, Sphere};
-use crate::bvh::{BLOCK, Bvh, LeafBlocks, Leaves, NodeId, SlabRay, padded};
+use crate::bvh::{BLOCK, Bvh, LeafBlocks, Leaves, SlabRay, padded};
 use crate::math::{Aabb, Ray};
 
 /// The primitives in the order of the leaves, with their vertices at hand.
@@ -17,15 +17,8 @@ pub(super) struct LeafOrder {
 
 impl LeafOrder {
     pub(super) fn new(shapes: &Shapes, bvh: &Bvh, ids: &LeafBlocks) -> Self {
-        let mut more = vec![false; ids.len()];
-        if let Some(root) = bvh.root() {
-            mark_more(bvh, root, &mut more);
-        }
-        let blocks = ids.iter().zip(more);
         Self {
-            blocks: blocks
-                .map(|(ids, more)| Block::new(shapes, ids, more))
-                .collect(),
+            blocks: bvh.map_blocks(ids, |ids, more| Block::new(shapes, ids, more)),
             first_sphere: u32::try_from(shapes.triangles.len())
                 .expect("the build checked the number"),
             spheres: shapes.spheres.clone(),
@@ -41,12 +34,12 @@ impl LeafOrder {
     }
 }
 
-/// Boxes of all primitives; empty for those that nothing can hit.
-pub(super) fn boxes(shapes: &Shapes) -> Vec<Aabb> {
-    let triangles = (0..shapes.triangles.len()).map(|i| triangle::bounds(&shapes.vertices(i)));
-    triangles
-        .chain(shapes.spheres.iter().map(Sphere::bounds))
-        .collect()
+/// The box of a primitive; empty if nothing can hit it.
+pub(super) fn bounds(shapes: &Shapes, id: u32) -> Aabb {
+    match shapes.sphere(id) {
+        Some(sphere) => sphere.bounds(),
+        None => triangle::bounds(&shapes.vertices(id as usize)),
+    }
 }
 
 /// A ray among the primitives.
@@ -199,20 +192,5 @@ impl Leaves for LeafOrder {
     #[inline(always)]
     fn blocks(&self) -> &[Block] {
         &self.blocks
-    }
-}
-
-/// Sets `more` for all blocks of each leaf below `node` but the last.
-fn mark_more(bvh: &Bvh, node: NodeId, more: &mut [bool]) {
-    let mut open = vec![node];
-    while let Some(node) = open.pop() {
-        match bvh.children(node) {
-            Some(children) => open.extend(children),
-            None => more[bvh.blocks(node)]
-                .split_last_mut()
-                .expect("a leaf has blocks")
-                .1
-                .fill(true),
-        }
     }
 }

@@ -1,30 +1,25 @@
-use std::ops::ControlFlow;
-
 use super::Shapes;
-use super::leaf::boxes;
-use crate::bvh::{Bvh, BvhKind, BvhQuality, BvhSettings, LeafBlocks};
-
-/// Largest leaf that the heuristic may choose: so large that it decides alone. On a knot of 70 000
-/// triangles it never wants more than six.
-const LEAF_SIZE: u32 = 16;
+use super::leaf::bounds;
+use crate::bvh::{Bvh, BvhKind, BvhQuality, BvhSettings, LeafBlocks, Progress};
 
 /// The best hierarchy over `shapes` that this program can build; reports the finished fraction
 /// (0 to 1) to `progress`, which may stop it. `None` if it did.
 pub(super) fn refine(
     shapes: &Shapes,
-    progress: &(dyn Fn(f32) -> ControlFlow<()> + Sync),
+    leaf_size: u32,
+    progress: &Progress<'_>,
 ) -> Option<(Bvh, LeafBlocks)> {
-    progress(0.0).continue_value()?;
     let settings = BvhSettings {
         kind: BvhKind::Sah,
-        leaf_size: LEAF_SIZE,
+        leaf_size,
         quality: BvhQuality::High,
     };
-    Bvh::build_with(&boxes(shapes), &settings, progress)
+    Bvh::build_with(shapes.len(), &|id| bounds(shapes, id), &settings, progress)
 }
 
 #[cfg(test)]
 mod tests {
+    use std::ops::ControlFlow;
     use std::sync::atomic::{AtomicUsize, Ordering};
 
     use super::*;
@@ -49,7 +44,6 @@ mod tests {
     #[test]
     fn a_refined_aggregate_shares_its_shapes_and_costs_no_more() {
         let fast = BvhSettings {
-            leaf_size: 16,
             quality: BvhQuality::Fast,
             ..BvhSettings::default()
         };
@@ -76,13 +70,13 @@ mod tests {
             all.fetch_add(1, Ordering::Relaxed);
             ControlFlow::Continue(())
         };
-        assert!(refine(&shapes, &count).is_some());
+        assert!(refine(&shapes, 4, &count).is_some());
         let reports = AtomicUsize::new(0);
         let stop_at_third = |_| match reports.fetch_add(1, Ordering::Relaxed) {
             0 | 1 => ControlFlow::Continue(()),
             _ => ControlFlow::Break(()),
         };
-        assert!(refine(&shapes, &stop_at_third).is_none());
+        assert!(refine(&shapes, 4, &stop_at_third).is_none());
         assert!(reports.into_inner() < all.into_inner());
     }
 }

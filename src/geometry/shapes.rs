@@ -27,6 +27,7 @@ impl Shapes {
     }
 
     /// The vertices of triangle `triangle`.
+    #[inline]
     pub fn vertices(&self, triangle: usize) -> [Vec3; 3] {
         self.triangles[triangle].map(|i| self.positions[i as usize])
     }

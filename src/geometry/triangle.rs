@@ -171,12 +171,24 @@ fn exact_edges(corners: [(f32, f32); 3]) -> (f32, f32, f32) {
 
 /// The box of a triangle; [`Aabb::EMPTY`] if it has no area or a vertex is not finite.
 pub(super) fn bounds(vertices: &[Vec3; 3]) -> Aabb {
+    if is_clearly_a_triangle(vertices) {
+        return Aabb::from_points(*vertices);
+    }
     let [a, b, c] = vertices.map(Vec3::as_dvec3);
     let area: DVec3 = (b - a).cross(c - a);
     if area == DVec3::ZERO || vertices.iter().any(|v| !v.is_finite()) {
         return Aabb::EMPTY;
     }
     Aabb::from_points(*vertices)
+}
+
+/// True only for finite triangles whose area in single precision is far from zero.
+fn is_clearly_a_triangle([a, b, c]: &[Vec3; 3]) -> bool {
+    let (ab, ac) = (*b - *a, *c - *a);
+    let least = ab.abs().max_element() * ac.abs().max_element() * gamma(32);
+    let area = ab.cross(ac).abs().max_element();
+    // Not where an underflow could hide something.
+    area > least && least > 1e-30 && ab.is_finite() && ac.is_finite()
 }
 
 /// The point of a triangle with barycentric weights 1 − `b1` − `b2`, `b1`, `b2`, and a bound of the

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use softbox::bvh::{Bvh, BvhKind, BvhSettings, NO_PRIMITIVE, NodeId};
+use softbox::bvh::{Bvh, BvhKind, BvhSettings, LeafBlocks, NO_PRIMITIVE, NodeId, Progress};
 use softbox::geometry::{Aggregate, TraceCounts};
 use softbox::math::Aabb;
 
@@ -14,6 +14,15 @@ fn boxes(n: usize) -> Vec<Aabb> {
     (0..n)
         .map(|i| Aabb::from_points(shapes.vertices(i)))
         .collect()
+}
+
+fn build_with(
+    boxes: &[Aabb],
+    settings: &BvhSettings,
+    progress: &Progress<'_>,
+) -> Option<(Bvh, LeafBlocks)> {
+    let bounds = |id: u32| boxes[id as usize];
+    Bvh::build_with(boxes.len(), &bounds, settings, progress)
 }
 
 fn contains(outer: Aabb, inner: Aabb) -> bool {
@@ -133,7 +142,7 @@ fn a_build_reports_its_progress_and_can_be_stopped() {
     for kind in [BvhKind::None, BvhKind::Median, BvhKind::Sah] {
         let calls = AtomicUsize::new(0);
         let finished = AtomicUsize::new(0);
-        let built = Bvh::build_with(&boxes, &settings(kind, 4), &|done| {
+        let built = build_with(&boxes, &settings(kind, 4), &|done| {
             assert!((0.0..=1.0).contains(&done));
             calls.fetch_add(1, Ordering::Relaxed);
             finished.fetch_add(usize::from(done == 1.0), Ordering::Relaxed);
@@ -144,7 +153,7 @@ fn a_build_reports_its_progress_and_can_be_stopped() {
         assert_eq!(finished.into_inner(), 1);
         for stop_at in [0, calls / 2, calls - 1] {
             let seen = AtomicUsize::new(0);
-            let built = Bvh::build_with(&boxes, &settings(kind, 4), &|_| {
+            let built = build_with(&boxes, &settings(kind, 4), &|_| {
                 if seen.fetch_add(1, Ordering::Relaxed) >= stop_at {
                     ControlFlow::Break(())
                 } else {

@@ -1,0 +1,260 @@
+use glam::Vec4;
+use rayon::prelude::*;
+
+use super::primitive::{Bounds, Extents, PrimitiveRef};
+
+/// Ranges longer than two chunks are binned and parted in parallel, in chunks of this size; what
+/// comes out does not depend on the number of threads.
+pub(super) const CHUNK: usize = 16_384;
+
+/// Maps centres to cells of equal size, on all axes at once.
+#[derive(Clone, Copy, Debug)]
+struct Grid {
+    origin: Vec4,
+    scale: Vec4,
+    last: f32,
+}
+
+/// Added to a number between one half and 2²², leaves it rounded in the lowest bits.
+const TO_BITS: f32 = 8_388_607.5;
+
+/// A cell's number as [`Grid::cells`] holds it.
+fn cell(number: usize) -> f32 {
+    TO_BITS + 0.5 + number as f32
+}
+
+impl Grid {
+    fn new(centers: &Bounds, cells: usize) -> Self {
+        let mut origin = centers.min;
+        let mut scale = Vec4::splat(cells as f32) / (centers.max - centers.min);
+        for axis in 0..4 {
+            // Too small or too large an extent to divide: all in the first cell.
+            if axis == 3 || !scale[axis].is_finite() || scale[axis] == 0.0 {
+                (origin[axis], scale[axis]) = (0.0, 0.0);
+            }
+        }
+        Self {
+            origin,
+            scale,
+            last: cells as f32 - 0.5,
+        }
+    }
+
+    /// The cells of a centre as floats whose lowest bits are the number.
+    #[inline(always)]
+    fn cells(&self, center: Vec4) -> Vec4 {
+        let at = (center - self.origin) * self.scale;
+        at.max(Vec4::splat(0.5)).min(Vec4::splat(self.last)) + Vec4::splat(TO_BITS)
+    }
+}
+
+/// Bounds and number of the primitives whose centres lie in each cell of each axis.
+#[derive(Clone, Copy, Debug)]
+struct Bins<const N: usize> {
+    bounds: [[Bounds; N]; 3],
+    counts: [[u32; N]; 3],
+}
+
+impl<const N: usize> Bins<N> {
+    const EMPTY: Self = Self {
+        bounds: [[Bounds::EMPTY; N]; 3],
+        counts: [[0; N]; 3],
+    };
+
+    #[inline(always)]
+    fn fill(refs: &[PrimitiveRef], grid: &Grid) -> Self {
+        const { assert!(N.is_power_of_two()) };
+        let mut bins = Self::EMPTY;
+        for r in refs {
+            let cells = grid.cells(r.center()).to_array();
+            for axis in 0..3 {
+                let cell = cells[axis].to_bits() as usize % N;
+                bins.bounds[axis][cell].grow(r.min, r.max);
+                let count = &mut bins.counts[axis][cell];
+                *count = count.wrapping_add(1);
+            }
+        }
+        bins
+    }
+
+    fn merge(&mut self, other: &Self) {
+        for (a, b) in self.bounds.iter_mut().zip(&other.bounds) {
+            a.iter_mut().zip(b).for_each(|(a, b)| *a = a.union(b));
+        }
+        for (a, b) in self.counts.iter_mut().zip(&other.counts) {
+            a.iter_mut().zip(b).for_each(|(a, b)| *a += b);
+        }
+    }
+
+    /// The last cell on the left of the cheapest plane of an axis, and the sum over both sides of
+    /// half area times `blocks`; `None` if no plane separates the centres or the areas overflow.
+    #[inline(always)]
+    fn cheapest(&self, axis: usize, shift: u32) -> Option<(usize, f32)> {
+        let (bounds, counts) = (&self.bounds[axis], &self.counts[axis]);
+        let mut right = [f32::INFINITY; N];
+        let (mut all, mut count) = (Bounds::EMPTY, 0);
+        for i in (1..N).rev() {
+            all = all.union(&bounds[i]);
+            count += counts[i];
+            if count > 0 {
+                right[i - 1] = all.half_area() * blocks(count, shift);
+            }
+        }
+        let (mut best, mut best_cost) = (N, f32::MAX);
+        let (mut all, mut count) = (Bounds::EMPTY, 0);
+        for i in 0..N - 1 {
+            all = all.union(&bounds[i]);
+            count += counts[i];
+            let cost = all.half_area() * blocks(count, shift) + right[i];
+            if count > 0 && cost < best_cost {
+                (best, best_cost) = (i, cost);
+            }
+        }
+        (best < N).then_some((best, best_cost))
+    }
+}
+
+/// Number of blocks of 2^`shift` primitives that `count` primitives fill, at least in part.
+#[inline(always)]
+pub(super) fn blocks(count: u32, shift: u32) -> f32 {
+    ((count + (1 << shift) - 1) >> shift) as f32
+}
+
+/// A plane between two cells.
+#[derive(Clone, Debug)]
+pub(super) struct Split {
+    grid: Grid,
+    axis: usize,
+    /// Last cell on the left.
+    limit: f32,
+    /// Bounds of left and right.
+    pub(super) bounds: [Bounds; 2],
+    /// Number of primitives on the left, of each chunk of the range.
+    left: Vec<usize>,
+    /// The same in sum.
+    pub(super) left_count: usize,
+    /// Sum over both sides of half area times number of blocks.
+    pub(super) cost: f32,
+}
+
+impl Split {
+    /// The cheapest plane by the surface-area heuristic in blocks of 2^`shift` primitives, `None`
+    /// if no plane separates the centres or the areas overflow.
+    ///
+    /// Wald 2007, "On fast Construction of SAH-based Bounding Volume Hierarchies".
+    pub(super) fn find(refs: &[PrimitiveRef], centers: &Bounds, shift: u32) -> Option<Self> {
+        if refs.len() <= 32 {
+            Self::find_among::<8>(refs, centers, shift)
+        } else {
+            Self::find_among::<16>(refs, centers, shift)
+        }
+    }
+
+    fn find_among<const N: usize>(
+        refs: &[PrimitiveRef],
+        centers: &Bounds,
+        shift: u32,
+    ) -> Option<Self> {
+        let grid = Grid::new(centers, N);
+        let mut chunks = Vec::new();
+        let bins = if refs.len() <= 2 * CHUNK {
+            Bins::<N>::fill(refs, &grid)
+        } else {
+            refs.par_chunks(CHUNK)
+                .map(|chunk| Bins::<N>::fill(chunk, &grid))
+                .collect_into_vec(&mut chunks);
+            let mut sum = Bins::EMPTY;
+            chunks.iter().for_each(|bins| sum.merge(bins));
+            sum
+        };
+        let mut best: Option<(usize, usize, f32)> = None;
+        for axis in (0..3).filter(|&axis| grid.scale[axis] > 0.0) {
+            if let Some((cell, cost)) = bins.cheapest(axis, shift)
+                && best.is_none_or(|(_, _, least)| cost < least)
+            {
+                best = Some((axis, cell, cost));
+            }
+        }
+        let (axis, last, cost) = best?;
+        let left_of = |bins: &Bins<N>| bins.counts[axis][..=last].iter().sum::<u32>() as usize;
+        let join = |cells: &[Bounds]| cells.iter().fold(Bounds::EMPTY, |a, b| a.union(b));
+        let (left, right) = bins.bounds[axis].split_at(last + 1);
+        Some(Self {
+            grid,
+            axis,
+            limit: cell(last),
+            bounds: [join(left), join(right)],
+            left: chunks.iter().map(left_of).collect(),
+            left_count: left_of(&bins),
+            cost,
+        })
+    }
+
+    /// Copies the primitives of each side, in order, into a slice of its own; returns the bounds of
+    /// their centres.
+    pub(super) fn part(
+        &self,
+        refs: &[PrimitiveRef],
+        mut left: &mut [PrimitiveRef],
+        mut right: &mut [PrimitiveRef],
+    ) -> [Bounds; 2] {
+        if self.left.is_empty() {
+            return self.part_chunk(refs, left, right);
+        }
+        let mut pieces = Vec::with_capacity(self.left.len());
+        for (chunk, &count) in refs.chunks(CHUNK).zip(&self.left) {
+            let (l, r);
+            (l, left) = left.split_at_mut(count);
+            (r, right) = right.split_at_mut(chunk.len() - count);
+            pieces.push((chunk, l, r));
+        }
+        pieces
+            .into_par_iter()
+            .map(|(chunk, left, right)| self.part_chunk(chunk, left, right))
+            .reduce(
+                || [Bounds::EMPTY; 2],
+                |a, b| [a[0].union(&b[0]), a[1].union(&b[1])],
+            )
+    }
+
+    fn part_chunk(
+        &self,
+        refs: &[PrimitiveRef],
+        left: &mut [PrimitiveRef],
+        right: &mut [PrimitiveRef],
+    ) -> [Bounds; 2] {
+        // A side that a primitive is not on sees its centre at infinity, where it changes nothing.
+        const GATES: [Vec4; 2] = [Vec4::INFINITY, Vec4::NEG_INFINITY];
+        let limit = Vec4::splat(self.limit);
+        let [mut l, mut r] = [Bounds::EMPTY; 2];
+        let (mut next_left, mut next_right) = (0, 0);
+        for primitive in refs {
+            let center = primitive.center();
+            let is_left = self.grid.cells(center).cmple(limit).bitmask() >> self.axis & 1;
+            // Written to both sides, kept on one: no branch that guesses wrong half of the time.
+            if let Some(place) = left.get_mut(next_left) {
+                *place = *primitive;
+            }
+            if let Some(place) = right.get_mut(next_right) {
+                *place = *primitive;
+            }
+            next_left += is_left as usize;
+            next_right += 1 - is_left as usize;
+            let gate = GATES[is_left as usize];
+            l.grow(center.max(gate), center.min(-gate));
+            r.grow(center.max(-gate), center.min(gate));
+        }
+        [l, r]
+    }
+}
+
+impl Extents {
+    /// [`Self::of`], in parallel if it pays.
+    pub(super) fn of_many(refs: &[PrimitiveRef]) -> Self {
+        if refs.len() <= 2 * CHUNK {
+            return Self::of(refs);
+        }
+        let chunks = refs.par_chunks(CHUNK).map(Self::of);
+        chunks.reduce(|| Self::EMPTY, Self::union)
+    }
+}

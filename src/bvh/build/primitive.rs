@@ -1,0 +1,174 @@
+use glam::{Vec3, Vec4, Vec4Swizzles};
+
+use crate::math::Aabb;
+
+/// A box in vector registers; the fourth lane means nothing.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::bvh) struct Bounds {
+    pub(super) min: Vec4,
+    pub(super) max: Vec4,
+}
+
+impl Bounds {
+    pub(super) const EMPTY: Self = Self {
+        min: Vec4::INFINITY,
+        max: Vec4::NEG_INFINITY,
+    };
+
+    #[inline(always)]
+    pub(super) fn grow(&mut self, min: Vec4, max: Vec4) {
+        self.min = self.min.min(min);
+        self.max = self.max.max(max);
+    }
+
+    #[inline(always)]
+    pub(super) fn union(mut self, other: &Self) -> Self {
+        self.grow(other.min, other.max);
+        self
+    }
+
+    /// Half the surface area; of an empty box not a number that means anything.
+    #[inline(always)]
+    pub(super) fn half_area(&self) -> f32 {
+        let e = self.max - self.min;
+        let products = e * e.yzxw();
+        products.x + products.y + products.z
+    }
+
+    pub(super) fn aabb(&self) -> Aabb {
+        Aabb {
+            min: self.min.truncate(),
+            max: self.max.truncate(),
+        }
+    }
+}
+
+/// Bit of an id that is flipped where it is held as a float, so that it is not a denormal number,
+/// which processors are slow with.
+pub(super) const NORMAL: u32 = 1 << 30;
+
+/// A primitive on its way into the tree: its bounds, and its id in the fourth lane of the minimum.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(32))]
+pub(super) struct PrimitiveRef {
+    pub(super) min: Vec4,
+    pub(super) max: Vec4,
+}
+
+impl PrimitiveRef {
+    pub(super) const NOTHING: Self = Self {
+        min: Vec4::INFINITY,
+        max: Vec4::NEG_INFINITY,
+    };
+
+    /// Primitive `id` with the box `bounds`; [`Self::NOTHING`] if that is empty or not finite.
+    pub(super) fn new(id: u32, bounds: &Aabb) -> Self {
+        if bounds.is_empty() || !bounds.min.is_finite() || !bounds.max.is_finite() {
+            return Self::NOTHING;
+        }
+        Self {
+            min: bounds.min.extend(f32::from_bits(id ^ NORMAL)),
+            max: bounds.max.extend(0.0),
+        }
+    }
+
+    /// Something numbered `id` with a box that is known to be finite.
+    pub(super) fn of_bounds(id: u32, bounds: &Bounds) -> Self {
+        Self {
+            min: bounds.min.truncate().extend(f32::from_bits(id ^ NORMAL)),
+            max: bounds.max.truncate().extend(0.0),
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn bounds(&self) -> Bounds {
+        Bounds {
+            min: self.min,
+            max: self.max,
+        }
+    }
+
+    pub(super) fn is_nothing(&self) -> bool {
+        self.min.x == f32::INFINITY
+    }
+
+    /// Index among the boxes given to the build.
+    pub(super) fn id(&self) -> u32 {
+        self.min.w.to_bits() ^ NORMAL
+    }
+
+    /// The middle; halved before the sum, which then cannot overflow.
+    #[inline(always)]
+    pub(super) fn center(&self) -> Vec4 {
+        self.min * 0.5 + self.max * 0.5
+    }
+}
+
+/// Bounds of some primitives and of their centres.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Extents {
+    pub(super) bounds: Bounds,
+    pub(super) centers: Bounds,
+}
+
+impl Extents {
+    pub(super) const EMPTY: Self = Self {
+        bounds: Bounds::EMPTY,
+        centers: Bounds::EMPTY,
+    };
+
+    pub(super) fn of(refs: &[PrimitiveRef]) -> Self {
+        let mut all = Self::EMPTY;
+        for r in refs {
+            all.bounds.grow(r.min, r.max);
+            let center = r.center();
+            all.centers.grow(center, center);
+        }
+        all
+    }
+
+    pub(super) fn union(self, other: Self) -> Self {
+        Self {
+            bounds: self.bounds.union(&other.bounds),
+            centers: self.centers.union(&other.centers),
+        }
+    }
+
+    /// The axis on which the centres lie farthest apart.
+    pub(super) fn longest_axis(&self) -> usize {
+        let extent: Vec3 = (self.centers.max - self.centers.min).truncate();
+        extent.max_position()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_reference_gives_its_box_and_id_back() {
+        assert_eq!(size_of::<PrimitiveRef>(), 32);
+        let bounds = Aabb::from_points([Vec3::new(-1.0, 2.0, 3.0), Vec3::new(5.0, 2.5, 9.0)]);
+        for id in [0, 1, (1 << 30) - 1, 1 << 30, (1 << 31) - 1] {
+            let r = PrimitiveRef::new(id, &bounds);
+            assert_eq!((r.id(), r.is_nothing()), (id, false));
+            assert_eq!(Extents::of(&[r]).bounds.aabb(), bounds);
+            assert_eq!(r.center().truncate(), Vec3::new(2.0, 2.25, 6.0));
+        }
+        let area = Extents::of(&[PrimitiveRef::new(7, &bounds)]).bounds;
+        assert_eq!(area.half_area(), bounds.half_area());
+    }
+
+    #[test]
+    fn boxes_without_a_place_are_nothing() {
+        let far = Vec3::new(0.0, f32::INFINITY, 0.0);
+        for bounds in [Aabb::EMPTY, Aabb::from_points([Vec3::ZERO, far])] {
+            assert!(PrimitiveRef::new(3, &bounds).is_nothing());
+        }
+        let nan = Aabb {
+            min: Vec3::NAN,
+            max: Vec3::ONE,
+        };
+        assert!(PrimitiveRef::new(3, &nan).is_nothing());
+    }
+}

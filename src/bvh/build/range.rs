@@ -1,0 +1,161 @@
+use super::bins::{Split, blocks};
+use super::primitive::{Extents, PrimitiveRef};
+use crate::bvh::tree::BLOCK;
+use crate::bvh::{BvhKind, BvhSettings};
+
+/// Below this depth in the binary tree, or that in the wide one, ranges are halved, whatever the
+/// heuristic says. 2³¹ primitives can be halved 31 times, so no leaf lies deeper than 91 and no wide
+/// node deeper than 55.
+const HALVING_DEPTH: usize = 60;
+const HALVING_WIDE_DEPTH: usize = 24;
+
+/// Cost of an inner node of the binary tree, of which up to seven make a wide node, in units of
+/// testing a block.
+const INNER_COST: f32 = 0.5;
+
+/// Nodes above, in the binary and in the wide tree.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Depth {
+    pub(super) binary: usize,
+    pub(super) wide: usize,
+}
+
+/// When to make leaves and how to split.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Rule {
+    kind: BvhKind,
+    leaf_size: usize,
+    /// Leaves are counted in blocks of 2^`shift` primitives.
+    shift: u32,
+}
+
+/// What becomes of a range.
+#[derive(Debug)]
+pub(super) enum Plan {
+    Leaf,
+    Halves,
+    Sides(Split),
+}
+
+impl Rule {
+    /// Down to single primitives.
+    pub(super) const SINGLE: Self = Self {
+        kind: BvhKind::Sah,
+        leaf_size: 1,
+        shift: 0,
+    };
+
+    pub(super) fn new(settings: &BvhSettings) -> Self {
+        let leaf_size = settings.leaf_size.clamp(1, 255) as usize;
+        Self {
+            kind: settings.kind,
+            leaf_size,
+            shift: leaf_size.min(BLOCK).ilog2(),
+        }
+    }
+
+    /// True if the range is a leaf without looking at its primitives.
+    pub(super) fn is_leaf(&self, count: usize) -> bool {
+        match self.kind {
+            BvhKind::None => true,
+            BvhKind::Median => count <= self.leaf_size,
+            BvhKind::Sah => count <= self.leaf_size.min(BLOCK),
+        }
+    }
+
+    pub(super) fn plan(&self, range: &Range<'_>, depth: Depth) -> Plan {
+        let count = range.len();
+        if self.is_leaf(count) {
+            return Plan::Leaf;
+        }
+        let fits = count <= self.leaf_size;
+        if depth.binary >= HALVING_DEPTH || depth.wide >= HALVING_WIDE_DEPTH {
+            return if fits { Plan::Leaf } else { Plan::Halves };
+        }
+        if self.kind == BvhKind::Median {
+            return Plan::Halves;
+        }
+        let split = Split::find(range.refs, &range.extents.centers, self.shift);
+        if fits {
+            let area = range.extents.bounds.half_area();
+            let cost = split.as_ref().map_or(f32::INFINITY, |split| split.cost);
+            if (blocks(count as u32, self.shift) - INNER_COST) * area <= cost {
+                return Plan::Leaf;
+            }
+        }
+        split.map_or(Plan::Halves, Plan::Sides)
+    }
+}
+
+/// Primitives that make a subtree, and as much room.
+#[derive(Debug)]
+pub(super) struct Range<'a> {
+    pub(super) refs: &'a mut [PrimitiveRef],
+    spare: &'a mut [PrimitiveRef],
+    pub(super) extents: Extents,
+}
+
+impl<'a> Range<'a> {
+    /// All of `refs`; `spare` is as long.
+    pub(super) fn new(refs: &'a mut [PrimitiveRef], spare: &'a mut [PrimitiveRef]) -> Self {
+        let extents = Extents::of_many(refs);
+        Self {
+            refs,
+            spare,
+            extents,
+        }
+    }
+
+    /// Number of primitives.
+    pub(super) fn len(&self) -> usize {
+        self.refs.len()
+    }
+
+    /// Leaves an empty range behind.
+    pub(super) fn take(&mut self) -> Self {
+        Self {
+            refs: std::mem::take(&mut self.refs),
+            spare: std::mem::take(&mut self.spare),
+            extents: self.extents,
+        }
+    }
+
+    /// Keeps the left side of `split` and returns the right one.
+    pub(super) fn part(&mut self, split: &Split) -> Self {
+        let whole = self.take();
+        let (left, right) = whole.spare.split_at_mut(split.left_count);
+        let centers = split.part(whole.refs, left, right);
+        let (spare_left, spare_right) = whole.refs.split_at_mut(split.left_count);
+        let extents = |side: usize| Extents {
+            bounds: split.bounds[side],
+            centers: centers[side],
+        };
+        *self = Self {
+            refs: left,
+            spare: spare_left,
+            extents: extents(0),
+        };
+        Self {
+            refs: right,
+            spare: spare_right,
+            extents: extents(1),
+        }
+    }
+
+    /// Keeps the half with the smaller centres on the longest axis, and returns the other.
+    ///
+    /// The id decides between equal centres, so that any range of two or more can be halved.
+    pub(super) fn halve(&mut self) -> Self {
+        let whole = self.take();
+        let axis = whole.extents.longest_axis();
+        let middle = whole.refs.len() / 2;
+        whole.refs.select_nth_unstable_by(middle, |a, b| {
+            let order = a.center()[axis].total_cmp(&b.center()[axis]);
+            order.then(a.id().cmp(&b.id()))
+        });
+        let (left, right) = whole.refs.split_at_mut(middle);
+        let (spare_left, spare_right) = whole.spare.split_at_mut(middle);
+        *self = Self::new(left, spare_left);
+        Self::new(right, spare_right)
+    }
+}
