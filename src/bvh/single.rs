@@ -2,13 +2,13 @@ use super::leaves::{Leaves, Work};
 use super::node::LEAF;
 use super::simd::{Kernel, NodeTest};
 use super::slab::SlabRay;
-use super::stack::{DONE, Stacks};
+use super::stack::{BOTTOM, DONE, Stack};
 use super::tree::Bvh;
 use crate::math::Ray;
 
 /// One ray after the other. For a few rays, and for scenes of a few nodes.
 #[derive(Debug)]
-pub(super) struct Single<'a, L, F, const ANY: bool> {
+pub(super) struct Single<'a, L, F, const ANY: bool, const STACK: usize> {
     pub(super) bvh: &'a Bvh,
     pub(super) leaves: &'a L,
     pub(super) rays: &'a [Ray],
@@ -16,15 +16,15 @@ pub(super) struct Single<'a, L, F, const ANY: bool> {
     pub(super) answer: F,
 }
 
-impl<L: Leaves, F: FnMut(usize, Option<&L::Query>), const ANY: bool> Kernel
-    for Single<'_, L, F, ANY>
+impl<L: Leaves, F: FnMut(usize, Option<&L::Query>), const ANY: bool, const STACK: usize> Kernel
+    for Single<'_, L, F, ANY, STACK>
 {
     type Answer = Work;
 
     #[inline(always)]
     fn run<N: NodeTest>(mut self) -> Work {
         let mut work = Work::default();
-        let mut stack = Stacks::new(self.bvh, 1);
+        let mut stack = Stack::<STACK>::EMPTY;
         for (i, ray) in self.rays.iter().enumerate() {
             let Some(slab) = SlabRay::new(ray) else {
                 (self.answer)(i, None);
@@ -33,7 +33,7 @@ impl<L: Leaves, F: FnMut(usize, Option<&L::Query>), const ANY: bool> Kernel
             let mut query = self.leaves.query(ray, &slab);
             let octant = slab.octant as usize;
             let mut limit = slab.t_max();
-            let mut top = stack.bottom(0);
+            let mut top = BOTTOM;
             let mut at = 0;
             while at != DONE {
                 if at & LEAF == 0 {

@@ -65,32 +65,45 @@ pub struct SlabRay {
     pub(super) inverse: [f32; 4],
     /// A bit for each axis on which the direction points down.
     pub(super) octant: u32,
+    /// For each axis the row of [`WideNode::planes`](super::node::WideNode) that the ray meets first.
+    pub(super) near: [u32; 3],
 }
 
 impl SlabRay {
     /// Prepares `ray`; `None` when it cannot meet anything (a number that is not finite, no
     /// direction, nothing between `t_min` and `t_max`).
-    #[inline(always)]
     pub fn new(ray: &Ray) -> Option<Self> {
-        let origin = ray.origin.extend(ray.t_min);
+        Self::can_meet(ray).then(|| Self::prepare(ray))
+    }
+
+    /// False when `ray` cannot meet anything; see [`Self::new`].
+    #[inline(always)]
+    pub(super) fn can_meet(ray: &Ray) -> bool {
         let direction = ray.direction.extend(0.0);
         // Zero, or NaN if anything is infinite or NaN.
-        let nothing = origin * 0.0 + direction * 0.0;
+        let nothing = ray.origin.extend(ray.t_min) * 0.0 + direction * 0.0;
         let is_finite = nothing.cmpeq(Vec4::ZERO).bitmask() == 0b1111;
         let is_zero = direction.cmpeq(Vec4::ZERO).bitmask() == 0b1111;
-        if !is_finite | is_zero | (ray.t_min >= ray.t_max) | ray.t_max.is_nan() {
-            return None;
-        }
+        // False for a t_max that is NaN.
+        is_finite & !is_zero & (ray.t_min < ray.t_max)
+    }
+
+    /// Prepares a ray that [`Self::can_meet`] something.
+    #[inline(always)]
+    pub(super) fn prepare(ray: &Ray) -> Self {
+        let direction = ray.direction.extend(0.0);
         // -0 becomes +0; the reciprocal stays finite, so that 0 · inf cannot arise.
-        let mut inverse = (Vec4::ONE / (direction + Vec4::ZERO))
+        let inverse = (Vec4::ONE / (direction + Vec4::ZERO))
             .min(Vec4::splat(f32::MAX))
             .max(Vec4::splat(-f32::MAX));
-        inverse.w = if ray.t_max < T_FAR { ray.t_max } else { T_FAR };
-        Some(Self {
-            origin: origin.to_array(),
-            inverse: inverse.to_array(),
-            octant: direction.cmplt(Vec4::ZERO).bitmask(),
-        })
+        let t_max = if ray.t_max < T_FAR { ray.t_max } else { T_FAR };
+        let octant = direction.cmplt(Vec4::ZERO).bitmask();
+        Self {
+            origin: ray.origin.extend(ray.t_min).to_array(),
+            inverse: inverse.with_w(t_max).to_array(),
+            octant,
+            near: [octant & 1, 2 + (octant >> 1 & 1), 4 + (octant >> 2)],
+        }
     }
 
     /// For an axis the side (0 minimum, 1 maximum) of a box that the ray meets first.

@@ -1,43 +1,47 @@
 use super::node::WIDTH;
 use super::octant::FAR_TO_NEAR;
 use super::simd::NodeTest;
-use super::tree::Bvh;
 
 /// Reference at the bottom of a stack: nothing is left. No leaf begins there.
 pub(super) const DONE: u32 = u32::MAX;
 
-/// What rays have still to visit, and from which ray parameter on: stacks of equal size one after
-/// the other, the nearest entry of each last.
-#[derive(Debug)]
-pub(super) struct Stacks {
-    references: Vec<u32>,
-    near: Vec<f32>,
-    size: usize,
+/// Size of the stacks for trees of usual depth.
+pub(super) const SHALLOW: usize = 128 + WIDTH;
+
+/// Size of the stacks for the deepest trees that the build makes.
+pub(super) const DEEP: usize = 1024 + WIDTH;
+
+/// What a ray has still to visit, and from which ray parameter on; the nearest last.
+///
+/// `SIZE` is [`WIDTH`] more than a power of two, so that positions are kept in bounds by a mask
+/// instead of a comparison.
+#[derive(Clone, Debug)]
+pub(super) struct Stack<const SIZE: usize> {
+    references: [u32; SIZE],
+    near: [f32; SIZE],
 }
 
-impl Stacks {
-    /// `count` empty stacks for the rays of `bvh`.
-    pub(super) fn new(bvh: &Bvh, count: usize) -> Self {
-        // One node leaves all but one of its children behind when the ray goes deeper; below them
-        // lies DONE, above them eight are written at once.
-        let size = (WIDTH - 1) * bvh.wide_depth() + 1 + WIDTH;
-        let mut stacks = Self {
-            references: vec![0; size * count],
-            near: vec![0.0; size * count],
-            size,
-        };
-        for i in 0..count {
-            stacks.references[i * size] = DONE;
-            stacks.near[i * size] = f32::NEG_INFINITY;
-        }
-        stacks
-    }
+/// The top of an empty stack.
+pub(super) const BOTTOM: usize = 1;
 
-    /// The top of stack `number` when it is empty.
-    #[inline(always)]
-    pub(super) fn bottom(&self, number: usize) -> usize {
-        number * self.size + 1
-    }
+/// True if the rays of a tree of `wide_depth` nodes one below the other find room on stacks of
+/// `size`: one node leaves all but one of its children behind when the ray goes deeper; below them
+/// lies [`DONE`], and above them eight are written at once.
+pub(super) const fn is_enough(size: usize, wide_depth: usize) -> bool {
+    (WIDTH - 1) * wide_depth + BOTTOM + WIDTH <= size
+}
+
+impl<const SIZE: usize> Stack<SIZE> {
+    const MASK: usize = {
+        assert!((SIZE - WIDTH).is_power_of_two());
+        SIZE - WIDTH - 1
+    };
+
+    /// An empty stack.
+    pub(super) const EMPTY: Self = Self {
+        references: [DONE; SIZE],
+        near: [f32::NEG_INFINITY; SIZE],
+    };
 
     /// Puts the children of a node in the slots `meets` on the stack with this `top`; returns its
     /// new top. `ANY`: without the parameters, which only matter when a limit moves.
@@ -50,9 +54,10 @@ impl Stacks {
         children: &[u32; WIDTH],
     ) -> usize {
         let order = FAR_TO_NEAR[octant % 8][meets as usize % (1 << WIDTH)];
-        N::arrange(order, children, eight(&mut self.references, top));
+        let at = top & Self::MASK;
+        N::arrange(order, children, eight(&mut self.references, at));
         if !ANY {
-            N::arrange_near(order, near, eight(&mut self.near, top));
+            N::arrange_near(order, near, eight(&mut self.near, at));
         }
         top + meets.count_ones() as usize
     }
@@ -63,10 +68,10 @@ impl Stacks {
     pub(super) fn pop<const ANY: bool>(&self, top: usize, limit: f32) -> (u32, usize) {
         let mut top = top - 1;
         // Equality stays in: a hit at the same parameter may have the smaller id.
-        while !ANY && self.near[top] > limit {
+        while !ANY && self.near[top & Self::MASK] > limit {
             top -= 1;
         }
-        (self.references[top], top)
+        (self.references[top & Self::MASK], top)
     }
 }
 

@@ -1,6 +1,7 @@
 use super::leaves::{Leaves, Work};
 use super::simd::dispatch;
 use super::single::Single;
+use super::stack::{DEEP, SHALLOW, is_enough};
 use super::stream::Stream;
 use super::tree::Bvh;
 use crate::math::{Isa, Ray};
@@ -23,25 +24,39 @@ impl Bvh {
             (0..rays.len()).for_each(|i| answer(i, None));
             return Work::default();
         }
-        if rays.len() <= FEW_RAYS {
-            return dispatch(
-                isa,
-                Single::<_, _, ANY> {
-                    bvh: self,
-                    leaves,
-                    rays,
-                    answer,
-                },
-            );
+        if is_enough(SHALLOW, self.wide_depth()) {
+            self.traverse_with::<ANY, SHALLOW, _>(isa, leaves, rays, answer)
+        } else {
+            self.traverse_with::<ANY, DEEP, _>(isa, leaves, rays, answer)
         }
-        dispatch(
-            isa,
-            Stream::<_, _, ANY> {
+    }
+
+    fn traverse_with<const ANY: bool, const STACK: usize, L: Leaves>(
+        &self,
+        isa: Isa,
+        leaves: &L,
+        rays: &[Ray],
+        answer: impl FnMut(usize, Option<&L::Query>),
+    ) -> Work {
+        assert!(
+            is_enough(STACK, self.wide_depth()),
+            "the build bounds the depth"
+        );
+        if rays.len() <= FEW_RAYS {
+            let kernel = Single::<_, _, ANY, STACK> {
                 bvh: self,
                 leaves,
                 rays,
                 answer,
-            },
-        )
+            };
+            return dispatch(isa, kernel);
+        }
+        let kernel = Stream::<_, _, ANY, STACK> {
+            bvh: self,
+            leaves,
+            rays,
+            answer,
+        };
+        dispatch(isa, kernel)
     }
 }

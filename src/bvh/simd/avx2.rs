@@ -56,13 +56,15 @@ impl NodeTest for Avx2 {
 
     #[inline(always)]
     fn enter(node: &WideNode, ray: &SlabRay, limit: f32) -> (__m256, u32) {
-        let t = |axis: usize, side: usize| {
-            let planes = load(&node.planes[axis][side & 1]);
+        let t = |axis: usize, row: u32| {
+            debug_assert!(row < 6);
+            // SAFETY: a prepared ray has rows 0 to 5 only.
+            let planes = load(unsafe { node.planes.as_flattened().get_unchecked(row as usize) });
             let (origin, inverse) = (splat(&ray.origin[axis]), splat(&ray.inverse[axis]));
             // SAFETY: AVX2 is there (see `Avx2`).
             unsafe { _mm256_mul_ps(_mm256_sub_ps(planes, origin), inverse) }
         };
-        let [x, y, z] = [ray.near_side(0), ray.near_side(1), ray.near_side(2)];
+        let [x, y, z] = ray.near;
         // SAFETY: AVX2 is there (see `Avx2`).
         unsafe {
             let near = _mm256_max_ps(
