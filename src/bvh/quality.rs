@@ -4,8 +4,6 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum BvhQuality {
-    /// Built soonest; rays take longer.
-    Fast,
     /// Built with the surface-area heuristic from the top.
     #[default]
     Standard,

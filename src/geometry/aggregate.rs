@@ -1,9 +1,9 @@
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Range};
 
 use super::block::{Block, ID_LIMIT};
 use super::leaf::{LeafOrder, bounds};
 use super::{Hit, Shapes};
-use crate::bvh::{BLOCK, Bvh, BvhQuality, BvhSettings, BvhStats, NodeId};
+use crate::bvh::{BLOCK, Bvh, BvhQuality, BvhSettings, BvhStats, NodeId, Progress};
 use crate::math::{Isa, Ray};
 
 /// Work done by traversal.
@@ -25,9 +25,9 @@ pub struct TraceCounts {
 /// nothing, and nothing is hit at or beyond [`crate::bvh::T_FAR`].
 #[derive(Clone, Debug)]
 pub struct Aggregate {
-    shapes: Shapes,
-    bvh: Bvh,
-    leaves: LeafOrder,
+    pub(super) shapes: Shapes,
+    pub(super) bvh: Bvh,
+    pub(super) leaves: LeafOrder,
     isa: Isa,
 }
 
@@ -43,15 +43,20 @@ impl Aggregate {
     pub fn build_with(
         shapes: Shapes,
         settings: BvhSettings,
-        progress: &(dyn Fn(f32) -> ControlFlow<()> + Sync),
+        progress: &Progress<'_>,
+    ) -> Option<Self> {
+        Self::build_quality(shapes, settings, BvhQuality::Standard, progress)
+    }
+
+    /// Like [`Self::build_with`], with more or less work on the hierarchy.
+    pub fn build_quality(
+        shapes: Shapes,
+        settings: BvhSettings,
+        quality: BvhQuality,
+        progress: &Progress<'_>,
     ) -> Option<Self> {
         assert!(shapes.len() < ID_LIMIT as usize, "too many primitives");
         let bounds = |id| bounds(&shapes, id);
-        let quality = if std::env::var("HIGH").is_ok() {
-            BvhQuality::High
-        } else {
-            BvhQuality::Standard
-        };
         let (bvh, ids) = Bvh::build_with(shapes.len(), &bounds, &settings, quality, progress)?;
         let leaves = LeafOrder::new(&shapes, &bvh, &ids);
         Some(Self {
@@ -77,6 +82,12 @@ impl Aggregate {
         blocks.iter().flat_map(Block::ids)
     }
 
+    /// Whether some of these blocks hold a primitive.
+    pub(super) fn holds(&self, blocks: Range<usize>, id: u32) -> bool {
+        let ids = self.leaves.blocks()[blocks].iter().flat_map(Block::ids);
+        ids.into_iter().any(|own| own == id)
+    }
+
     /// The shapes.
     pub fn shapes(&self) -> &Shapes {
         &self.shapes
@@ -91,6 +102,7 @@ impl Aggregate {
     pub fn stats(&self) -> BvhStats {
         let mut stats = self.bvh.stats();
         stats.bytes += self.leaves.bytes();
+        stats.bytes_per_primitive = stats.bytes as f64 / stats.primitives.max(1) as f64;
         stats
     }
 

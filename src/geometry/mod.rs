@@ -6,6 +6,8 @@ mod block;
 mod hit;
 mod leaf;
 mod mesh;
+mod overlap;
+mod refit;
 mod shapes;
 mod sphere;
 mod triangle;
