@@ -322,3 +322,69 @@ impl Extents {
         chunks.reduce(|| Self::EMPTY, Self::union)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::*;
+    use crate::math::Aabb;
+
+    fn split(boxes: &[Aabb], with_sizes: bool) -> (Vec<u32>, Vec<u32>, Split) {
+        let refs: Vec<_> = (0..)
+            .zip(boxes)
+            .map(|(i, b)| PrimitiveRef::new(i, b))
+            .collect();
+        let all = Extents::of(&refs);
+        let largest = with_sizes.then(|| all.bounds.half_area());
+        let split = Split::find(&refs, &all.centers, largest, 2).expect("can be parted");
+        let mut left = vec![PrimitiveRef::NOTHING; split.left_count];
+        let mut right = vec![PrimitiveRef::NOTHING; refs.len() - split.left_count];
+        let centers = split.part(&refs, &mut left, &mut right);
+        for (side, refs) in [&left, &right].into_iter().enumerate() {
+            let extents = Extents::of(refs);
+            assert_eq!(extents.bounds.aabb(), split.bounds[side].aabb());
+            assert_eq!(extents.centers.aabb(), centers[side].aabb());
+        }
+        let ids = |refs: &[PrimitiveRef]| refs.iter().map(PrimitiveRef::id).collect();
+        (ids(&left), ids(&right), split)
+    }
+
+    fn unit(x: f32, y: f32) -> Aabb {
+        let corner = Vec3::new(x, y, 0.0);
+        Aabb::from_points([corner, corner + Vec3::ONE])
+    }
+
+    #[test]
+    fn a_gap_parts_two_groups_of_any_length_in_their_order() {
+        for count in [8, 40, 3 * CHUNK + 5] {
+            let boxes: Vec<_> = (0..count)
+                .map(|i| unit((i % 3 / 2) as f32 * 100.0, (i % 7) as f32))
+                .collect();
+            let (left, right, _) = split(&boxes, false);
+            assert!(
+                left.into_iter()
+                    .eq((0..count as u32).filter(|i| i % 3 != 2))
+            );
+            assert!(
+                right
+                    .into_iter()
+                    .eq((0..count as u32).filter(|i| i % 3 == 2))
+            );
+        }
+    }
+
+    #[test]
+    fn a_wall_is_parted_from_small_boxes_by_its_size() {
+        let mut boxes: Vec<_> = (0..500)
+            .map(|i| unit((i % 20) as f32, (i / 20) as f32))
+            .collect();
+        boxes[123] = Aabb::from_points([Vec3::splat(-100.0), Vec3::new(120.0, 126.0, 101.0)]);
+        let (left, right, sizes) = split(&boxes, true);
+        assert_eq!((left, right.len()), (vec![123], 499));
+        let [large, small] = sizes.largest.expect("sizes were looked at");
+        assert!(large >= boxes[123].half_area() && (3.0..=8.0).contains(&small));
+        let (_, _, places) = split(&boxes, false);
+        assert!(sizes.cost < 0.1 * places.cost);
+    }
+}
