@@ -27,6 +27,10 @@ impl Bvh {
                 }
             }
         }
-        (nodes / all, blocks / all)
+        if all > 0.0 {
+            (nodes / all, blocks / all)
+        } else {
+            (1.0, 1.0)
+        }
     }
 }

@@ -1,12 +1,12 @@
 //! Floor 2: the bounding volume hierarchy over boxes. Knows no shape: leaves are tested through a
 //! trait that the caller implements.
 //!
-//! The binary tree ([`Bvh`]) is what is built, shown and counted; the traversal walks the same boxes
-//! four at a time. It never loses a primitive to rounding: boxes are padded ([`padded`]), the box test
-//! has a margin, and every operation in it rounds monotonically, so that a ray that meets a padded
-//! box also meets, in floating point, every box around it. A caller that keeps a hit only if the
-//! ray meets the primitive's own padded box, and never reports it in front of that box
-//! ([`SlabRay::enter`]), gets the same answer from every tree, bit for bit.
+//! A [`Bvh`] is built, stored and walked in nodes of eight children; seen from outside, and counted,
+//! it is the binary tree between them. It never loses a primitive to rounding: boxes are padded
+//! ([`padded`]), the box test has a margin, and every operation in it rounds monotonically, so that a
+//! ray that meets a padded box also meets, in floating point, every box around it. A caller that
+//! keeps a hit only if the ray meets the primitive's own padded box, and never reports it in front of
+//! that box ([`SlabRay::enter`]), gets the same answer from every tree, bit for bit.
 
 mod blocks;
 mod build;
@@ -14,6 +14,8 @@ mod expected;
 mod leaves;
 mod node;
 mod octant;
+mod overlap;
+mod refit;
 mod settings;
 mod simd;
 mod single;

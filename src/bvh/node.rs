@@ -74,10 +74,7 @@ impl WideNode {
             ..Self::EMPTY
         };
         for (child, slot) in children.iter().zip(slots) {
-            for axis in 0..3 {
-                node.planes[axis][0][slot] = child.bounds.min[axis];
-                node.planes[axis][1][slot] = child.bounds.max[axis];
-            }
+            node.set_bounds(slot, child.bounds);
             node.children[slot] = child.reference;
             if child.reference & LEAF != 0 && !inner.is_empty() {
                 node.leaf_primitives[slot] =
@@ -129,6 +126,14 @@ impl WideNode {
                     max: corner(1),
                 }
             }
+        }
+    }
+
+    /// Replaces the bounds of the child in `slot`.
+    pub(super) fn set_bounds(&mut self, slot: usize, bounds: Aabb) {
+        for (axis, planes) in self.planes.iter_mut().enumerate() {
+            planes[0][slot] = bounds.min[axis];
+            planes[1][slot] = bounds.max[axis];
         }
     }
 

@@ -26,12 +26,18 @@ pub struct BvhStats {
     /// surface-area heuristic. MacDonald and Booth 1990, "Heuristics for ray tracing using space
     /// subdivision".
     pub sah_cost: f64,
+    /// Wide nodes that a random ray that meets the root's box is expected to visit.
+    pub expected_nodes: f64,
+    /// Blocks of primitives that it is expected to visit.
+    pub expected_blocks: f64,
     /// Primitives in the largest leaf.
     pub largest_leaf: usize,
     /// Number of leaves by number of primitives.
     pub leaf_histogram: BTreeMap<usize, usize>,
     /// Memory in bytes.
     pub bytes: usize,
+    /// Memory in bytes by primitive.
+    pub bytes_per_primitive: f64,
     /// Wall-clock time of the build in seconds.
     pub build_seconds: f64,
 }
@@ -50,6 +56,8 @@ impl Bvh {
         let Some(root) = self.root() else {
             return stats;
         };
+        (stats.expected_nodes, stats.expected_blocks) = self.expected_visits();
+        stats.bytes_per_primitive = stats.bytes as f64 / stats.primitives.max(1) as f64;
         let mut depth_sum = 0;
         let mut cost = 0.0;
         let mut open = vec![(root, 0)];

@@ -61,6 +61,10 @@ impl Bvh {
         &self.nodes
     }
 
+    pub(super) fn nodes_mut(&mut self) -> &mut [WideNode] {
+        &mut self.nodes
+    }
+
     /// Wide nodes from the root to the deepest one, both included.
     pub(super) fn wide_depth(&self) -> usize {
         self.wide_depth

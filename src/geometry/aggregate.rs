@@ -1,11 +1,11 @@
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Range};
 use std::sync::Arc;
 
 use super::block::{Block, ID_LIMIT};
 use super::leaf::{LeafOrder, bounds};
 use super::refine::refine;
 use super::{Hit, Shapes};
-use crate::bvh::{BLOCK, Bvh, BvhQuality, BvhSettings, BvhStats, NodeId};
+use crate::bvh::{BLOCK, Bvh, BvhQuality, BvhSettings, BvhStats, NodeId, Progress};
 use crate::math::{Isa, Ray};
 
 /// Work done by traversal.
@@ -27,9 +27,9 @@ pub struct TraceCounts {
 /// nothing, and nothing is hit at or beyond [`crate::bvh::T_FAR`].
 #[derive(Clone, Debug)]
 pub struct Aggregate {
-    shapes: Arc<Shapes>,
-    bvh: Bvh,
-    leaves: LeafOrder,
+    pub(super) shapes: Arc<Shapes>,
+    pub(super) bvh: Bvh,
+    pub(super) leaves: LeafOrder,
     leaf_size: u32,
     isa: Isa,
 }
@@ -47,7 +47,7 @@ impl Aggregate {
     pub fn build_with(
         shapes: Shapes,
         settings: BvhSettings,
-        progress: &(dyn Fn(f32) -> ControlFlow<()> + Sync),
+        progress: &Progress<'_>,
     ) -> Option<Self> {
         assert!(shapes.len() < ID_LIMIT as usize, "too many primitives");
         let bounds = |id| bounds(&shapes, id);
@@ -72,7 +72,7 @@ impl Aggregate {
 
     /// Another hierarchy over the same (shared) shapes that costs rays less and takes longer to
     /// make; `progress` as in [`Self::build_with`].
-    pub fn refined(&self, progress: &(dyn Fn(f32) -> ControlFlow<()> + Sync)) -> Option<Self> {
+    pub fn refined(&self, progress: &Progress<'_>) -> Option<Self> {
         let (bvh, ids) = refine(&self.shapes, self.leaf_size, progress)?;
         let leaves = LeafOrder::new(&self.shapes, &bvh, &ids);
         Some(Self {
@@ -99,6 +99,12 @@ impl Aggregate {
         blocks.iter().flat_map(Block::ids)
     }
 
+    /// Whether some of these blocks hold a primitive.
+    pub(super) fn holds(&self, blocks: Range<usize>, id: u32) -> bool {
+        let ids = self.leaves.blocks()[blocks].iter().flat_map(Block::ids);
+        ids.into_iter().any(|own| own == id)
+    }
+
     /// The shapes.
     pub fn shapes(&self) -> &Shapes {
         &self.shapes
@@ -113,6 +119,7 @@ impl Aggregate {
     pub fn stats(&self) -> BvhStats {
         let mut stats = self.bvh.stats();
         stats.bytes += self.leaves.bytes();
+        stats.bytes_per_primitive = stats.bytes as f64 / stats.primitives.max(1) as f64;
         stats
     }
 

@@ -2,6 +2,7 @@ use glam::{Vec3, Vec4};
 
 use super::Shapes;
 use crate::bvh::{BLOCK, NO_PRIMITIVE};
+use crate::math::Aabb;
 
 /// Four primitives of a leaf side by side.
 #[derive(Clone, Copy, Debug)]
@@ -48,6 +49,29 @@ impl Block {
         let mut ids = ids.map(|id| id & NOTHING);
         ids[0] |= flags;
         Self { corners, ids }
+    }
+
+    /// Makes the same block of shapes that have moved; returns the box of those that can be hit.
+    pub(super) fn renew(&mut self, shapes: &Shapes, bounds: &impl Fn(u32) -> Aabb) -> Aabb {
+        let ids = [0, 1, 2, 3].map(|lane| match self.id(lane) {
+            NOTHING => NO_PRIMITIVE,
+            id => id,
+        });
+        *self = Self::new(shapes, &ids, self.has_more());
+        let mut all = Aabb::EMPTY;
+        for (lane, id) in ids
+            .into_iter()
+            .enumerate()
+            .filter(|(_, id)| *id != NO_PRIMITIVE)
+        {
+            let own = bounds(id);
+            if own.is_empty() {
+                let axes = self.corners.iter_mut().flatten();
+                axes.for_each(|axis| axis[lane] = f32::NAN);
+            }
+            all = all.union(own);
+        }
+        all
     }
 
     /// Coordinate `axis` of vertex `corner` of all triangles.

@@ -25,6 +25,13 @@ impl LeafOrder {
         }
     }
 
+    /// Fits `bvh`, and the blocks, to `shapes` that have moved; returns what [`Bvh::refit`] does.
+    pub(super) fn refit(&mut self, bvh: &mut Bvh, shapes: &Shapes) -> f64 {
+        bvh.refit(&mut self.blocks, &|block: &mut Block| {
+            block.renew(shapes, &|id| bounds(shapes, id))
+        })
+    }
+
     pub(super) fn blocks(&self) -> &[Block] {
         &self.blocks
     }

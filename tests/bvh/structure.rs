@@ -3,7 +3,9 @@
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use softbox::bvh::{Bvh, BvhKind, BvhSettings, LeafBlocks, NO_PRIMITIVE, NodeId, Progress};
+use softbox::bvh::{
+    Bvh, BvhKind, BvhQuality, BvhSettings, LeafBlocks, NO_PRIMITIVE, NodeId, Progress, padded,
+};
 use softbox::geometry::{Aggregate, TraceCounts};
 use softbox::math::Aabb;
 
@@ -19,10 +21,28 @@ fn boxes(n: usize) -> Vec<Aabb> {
 fn build_with(
     boxes: &[Aabb],
     settings: &BvhSettings,
+    quality: BvhQuality,
     progress: &Progress<'_>,
 ) -> Option<(Bvh, LeafBlocks)> {
     let bounds = |id: u32| boxes[id as usize];
-    Bvh::build_with(boxes.len(), &bounds, settings, progress)
+    let settings = BvhSettings {
+        quality,
+        ..*settings
+    };
+    Bvh::build_with(boxes.len(), &bounds, &settings, progress)
+}
+
+fn build(boxes: &[Aabb], settings: &BvhSettings, quality: BvhQuality) -> (Bvh, LeafBlocks) {
+    build_with(boxes, settings, quality, &|_| ControlFlow::Continue(())).expect("not stopped")
+}
+
+const QUALITIES: [BvhQuality; 2] = [BvhQuality::Standard, BvhQuality::High];
+
+/// Kinds with the qualities that make a difference.
+fn trees() -> impl Iterator<Item = (BvhKind, BvhQuality)> {
+    let sah = QUALITIES.map(|quality| (BvhKind::Sah, quality));
+    let others = [BvhKind::None, BvhKind::Median].map(|kind| (kind, BvhQuality::High));
+    others.into_iter().chain(sah)
 }
 
 fn contains(outer: Aabb, inner: Aabb) -> bool {
@@ -40,9 +60,9 @@ fn nodes(bvh: &Bvh, node: NodeId, out: &mut Vec<NodeId>) {
 #[test]
 fn every_node_holds_its_children_and_every_primitive_is_in_one_leaf() {
     let boxes = boxes(5_000);
-    for kind in [BvhKind::None, BvhKind::Median, BvhKind::Sah] {
-        for leaf_size in [1, 4, 16] {
-            let (bvh, blocks) = Bvh::build(&boxes, &settings(kind, leaf_size));
+    for (kind, quality) in trees() {
+        for leaf_size in [1, 3, 4, 16, 255] {
+            let (bvh, blocks) = build(&boxes, &settings(kind, leaf_size), quality);
             let root = bvh.root().expect("not empty");
             let mut all = Vec::new();
             nodes(&bvh, root, &mut all);
@@ -54,7 +74,7 @@ fn every_node_holds_its_children_and_every_primitive_is_in_one_leaf() {
                 let ids: Vec<_> = ids.copied().filter(|&id| id != NO_PRIMITIVE).collect();
                 assert_eq!(ids.len(), bvh.primitives_below(node));
                 for &id in &ids {
-                    assert!(contains(bounds, boxes[id as usize]));
+                    assert!(contains(bounds, padded(boxes[id as usize])));
                 }
                 let Some(children) = bvh.children(node) else {
                     assert!(kind == BvhKind::None || ids.len() <= leaf_size as usize);
@@ -116,13 +136,13 @@ fn statistics_describe_the_tree() {
 #[test]
 fn the_tree_does_not_depend_on_the_number_of_threads() {
     // Large enough for parallel scans and several parallel splits.
-    let boxes = boxes(150_000);
-    for kind in [BvhKind::Median, BvhKind::Sah] {
+    let boxes = boxes(80_000);
+    for (kind, quality) in trees() {
         let build = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
             let (bvh, blocks) = pool
                 .expect("threads")
-                .install(|| Bvh::build(&boxes, &settings(kind, 4)));
+                .install(|| build(&boxes, &settings(kind, 4), quality));
             let mut all = Vec::new();
             nodes(&bvh, bvh.root().expect("not empty"), &mut all);
             let nodes: Vec<_> = all
@@ -132,17 +152,17 @@ fn the_tree_does_not_depend_on_the_number_of_threads() {
             (blocks, nodes)
         };
         let one = build(1);
-        assert!(one == build(2) && one == build(3), "{kind:?}");
+        assert!(one == build(2) && one == build(3), "{kind:?} {quality:?}");
     }
 }
 
 #[test]
 fn a_build_reports_its_progress_and_can_be_stopped() {
     let boxes = boxes(60_000);
-    for kind in [BvhKind::None, BvhKind::Median, BvhKind::Sah] {
+    for (kind, quality) in trees() {
         let calls = AtomicUsize::new(0);
         let finished = AtomicUsize::new(0);
-        let built = build_with(&boxes, &settings(kind, 4), &|done| {
+        let built = build_with(&boxes, &settings(kind, 4), quality, &|done| {
             assert!((0.0..=1.0).contains(&done));
             calls.fetch_add(1, Ordering::Relaxed);
             finished.fetch_add(usize::from(done == 1.0), Ordering::Relaxed);
@@ -153,14 +173,17 @@ fn a_build_reports_its_progress_and_can_be_stopped() {
         assert_eq!(finished.into_inner(), 1);
         for stop_at in [0, calls / 2, calls - 1] {
             let seen = AtomicUsize::new(0);
-            let built = build_with(&boxes, &settings(kind, 4), &|_| {
+            let built = build_with(&boxes, &settings(kind, 4), quality, &|_| {
                 if seen.fetch_add(1, Ordering::Relaxed) >= stop_at {
                     ControlFlow::Break(())
                 } else {
                     ControlFlow::Continue(())
                 }
             });
-            assert!(built.is_none(), "{kind:?} at {stop_at} of {calls}");
+            assert!(
+                built.is_none(),
+                "{kind:?} {quality:?} at {stop_at} of {calls}"
+            );
         }
     }
 }
@@ -191,8 +214,84 @@ fn the_depth_is_bounded_for_centres_in_geometric_progression() {
             Aabb::from_points([glam::Vec3::splat(x), glam::Vec3::splat(x * 1.01)])
         })
         .collect();
-    let stats = Bvh::build(&boxes, &settings(BvhKind::Sah, 1)).0.stats();
-    assert!(stats.max_depth <= 92, "{stats:?}");
+    for quality in QUALITIES {
+        let (bvh, _) = build(&boxes, &settings(BvhKind::Sah, 1), quality);
+        let stats = bvh.stats();
+        assert!(stats.max_depth <= 100, "{stats:?}");
+    }
+}
+
+#[test]
+fn hits_do_not_depend_on_the_quality() {
+    let rays = scenes::random_rays(5_000, 17);
+    for shapes in [scenes::mixed(500), scenes::spiky_sphere()] {
+        let brute = scenes::brute_force(shapes.clone());
+        let want = scenes::closest(&brute, &rays);
+        for (kind, quality) in trees() {
+            for leaf_size in [1, 4, 7] {
+                let settings = BvhSettings {
+                    quality,
+                    ..settings(kind, leaf_size)
+                };
+                let tree = Aggregate::build(shapes.clone(), settings);
+                let got = scenes::closest(&tree, &rays);
+                for (got, want) in got.iter().zip(&want) {
+                    assert_eq!(scenes::bits(got), scenes::bits(want), "{settings:?}");
+                }
+            }
+        }
+    }
+}
+
+/// A fine sphere in a box of twelve large triangles.
+#[test]
+fn large_triangles_around_a_mesh_do_not_spoil_its_boxes() {
+    let mut shapes = scenes::closed_sphere(60, |i, j| 0.5 + 0.1 * ((i * j) as f32).sin());
+    let walls = scenes::cube();
+    let first = shapes.positions.len() as u32;
+    let alone = Aggregate::build(shapes.clone(), BvhSettings::default()).stats();
+    shapes.positions.extend(walls.positions);
+    let moved = walls.triangles.iter().map(|t| t.map(|i| i + first));
+    shapes.triangles.extend(moved);
+    let room = Aggregate::build(shapes, BvhSettings::default()).stats();
+    // A ray through the room meets the sphere's box, of a third of the side, one time in six.
+    assert!(
+        room.expected_nodes < 1.5 + 0.4 * alone.expected_nodes,
+        "{room:?} {alone:?}"
+    );
+}
+
+#[test]
+fn a_better_quality_expects_less_work_and_says_so() {
+    let boxes = boxes(20_000);
+    let cost = |quality| {
+        let stats = build(&boxes, &settings(BvhKind::Sah, 4), quality).0.stats();
+        assert!((stats.bytes_per_primitive * 20_000.0 - stats.bytes as f64).abs() < 1.0);
+        stats.expected_nodes + stats.expected_blocks
+    };
+    let (standard, high) = (cost(BvhQuality::Standard), cost(BvhQuality::High));
+    assert!(high < 0.99 * standard, "{high} {standard}");
+    let one_leaf = Bvh::build(&boxes, &settings(BvhKind::None, 4)).0.stats();
+    assert_eq!(
+        (one_leaf.expected_nodes, one_leaf.expected_blocks),
+        (1.0, 5_000.0)
+    );
+}
+
+#[test]
+fn the_end_point_overlap_is_that_of_the_boxes_around_the_points() {
+    // Two triangles side by side: each in its own box, or both in one.
+    let shapes = scenes::cube();
+    let overlap = |leaf_size| {
+        Aggregate::build(shapes.clone(), settings(BvhKind::Sah, leaf_size)).end_point_overlap(1_000)
+    };
+    let (fine, coarse) = (overlap(1), overlap(12));
+    assert!(
+        (0.5..4.0).contains(&fine) && coarse < fine,
+        "{fine} {coarse}"
+    );
+    let none = Aggregate::build(scenes::soup([]), BvhSettings::default());
+    assert_eq!(none.end_point_overlap(1_000), 0.0);
 }
 
 #[test]

@@ -23,7 +23,12 @@ struct Description {
     report: ImportReport,
     decisions: Vec<String>,
     bvh: BvhStats,
+    /// End-point overlap.
+    epo: f64,
 }
+
+/// Points at which the end-point overlap is taken.
+const OVERLAP_SAMPLES: usize = 10_000;
 
 /// Prints what a scene file holds, what was guessed and dropped, and what its hierarchy is like.
 pub(crate) fn run(args: &InfoArgs) -> Result<(), Failure> {
@@ -44,6 +49,7 @@ pub(crate) fn run(args: &InfoArgs) -> Result<(), Failure> {
         report,
         decisions: prepared.notes().to_vec(),
         bvh: prepared.aggregate().stats(),
+        epo: prepared.aggregate().end_point_overlap(OVERLAP_SAMPLES),
     };
     print(&description, args.json)
         .context("Cannot write to standard output")
@@ -87,5 +93,10 @@ fn print(description: &Description, as_json: bool) -> std::io::Result<()> {
         bvh.largest_leaf,
         bvh.bytes,
         bvh.build_seconds
+    )?;
+    writeln!(
+        out,
+        "rays: {:.2} nodes and {:.2} blocks expected, end-point overlap {:.2}; {:.1} bytes per primitive",
+        bvh.expected_nodes, bvh.expected_blocks, description.epo, bvh.bytes_per_primitive
     )
 }

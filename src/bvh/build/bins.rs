@@ -7,12 +7,27 @@ use super::primitive::{Bounds, Extents, PrimitiveRef};
 /// comes out does not depend on the number of threads.
 pub(super) const CHUNK: usize = 16_384;
 
-/// Maps centres to cells of equal size, on all axes at once.
+/// Maps centres to cells of equal size, on all axes at once, and, as a fourth axis, areas of boxes
+/// to cells of equal binary exponent, the largest first.
+///
+/// The fourth axis parts few large primitives, such as walls, from the many small ones among them,
+/// whose every box they would blow up.
 #[derive(Clone, Copy, Debug)]
 struct Grid {
     origin: Vec4,
     scale: Vec4,
     last: f32,
+    /// Exponent of the first cell of the fourth axis.
+    largest: i32,
+}
+
+/// Axes of space.
+const SPACE: usize = 3;
+/// Axes of space and size.
+const SPACE_AND_SIZE: usize = 4;
+
+fn exponent(area: f32) -> i32 {
+    (area.to_bits() >> 23) as i32
 }
 
 /// Added to a number between one half and 2²², leaves it rounded in the lowest bits.
@@ -24,7 +39,7 @@ fn cell(number: usize) -> f32 {
 }
 
 impl Grid {
-    fn new(centers: &Bounds, cells: usize) -> Self {
+    fn new(centers: &Bounds, cells: usize, largest: f32) -> Self {
         let mut origin = centers.min;
         let mut scale = Vec4::splat(cells as f32) / (centers.max - centers.min);
         for axis in 0..4 {
@@ -37,28 +52,40 @@ impl Grid {
             origin,
             scale,
             last: cells as f32 - 0.5,
+            largest: exponent(largest),
         }
     }
 
-    /// The cells of a centre as floats whose lowest bits are the number.
+    /// The half area that no box in the cells of the fourth axis from `first` on exceeds.
+    fn largest_from(&self, first: usize, counts: &[u32]) -> f32 {
+        let cell = (first..counts.len()).find(|&i| counts[i] > 0);
+        let above = self.largest - cell.unwrap_or(counts.len()) as i32 + 1;
+        f32::from_bits((above.clamp(0, 255) as u32) << 23)
+    }
+
+    /// The cells of a primitive with that centre as floats whose lowest bits are the number.
     #[inline(always)]
-    fn cells(&self, center: Vec4) -> Vec4 {
-        let at = (center - self.origin) * self.scale;
+    fn cells<const AXES: usize>(&self, primitive: &PrimitiveRef, center: Vec4) -> Vec4 {
+        let mut at = (center - self.origin) * self.scale;
+        if AXES == SPACE_AND_SIZE {
+            let below = self.largest - exponent(primitive.bounds().half_area());
+            at.w = below as f32 + 0.5;
+        }
         at.max(Vec4::splat(0.5)).min(Vec4::splat(self.last)) + Vec4::splat(TO_BITS)
     }
 }
 
 /// Bounds and number of the primitives whose centres lie in each cell of each axis.
 #[derive(Clone, Copy, Debug)]
-struct Bins<const N: usize> {
-    bounds: [[Bounds; N]; 3],
-    counts: [[u32; N]; 3],
+struct Bins<const N: usize, const AXES: usize> {
+    bounds: [[Bounds; N]; AXES],
+    counts: [[u32; N]; AXES],
 }
 
-impl<const N: usize> Bins<N> {
+impl<const N: usize, const AXES: usize> Bins<N, AXES> {
     const EMPTY: Self = Self {
-        bounds: [[Bounds::EMPTY; N]; 3],
-        counts: [[0; N]; 3],
+        bounds: [[Bounds::EMPTY; N]; AXES],
+        counts: [[0; N]; AXES],
     };
 
     #[inline(always)]
@@ -66,9 +93,9 @@ impl<const N: usize> Bins<N> {
         const { assert!(N.is_power_of_two()) };
         let mut bins = Self::EMPTY;
         for r in refs {
-            let cells = grid.cells(r.center()).to_array();
-            for axis in 0..3 {
-                let cell = cells[axis].to_bits() as usize % N;
+            let cells = grid.cells::<AXES>(r, r.center()).to_array();
+            for (axis, cell) in cells.into_iter().enumerate().take(AXES) {
+                let cell = cell.to_bits() as usize % N;
                 bins.bounds[axis][cell].grow(r.min, r.max);
                 let count = &mut bins.counts[axis][cell];
                 *count = count.wrapping_add(1);
@@ -133,42 +160,51 @@ pub(super) struct Split {
     left: Vec<usize>,
     /// The same in sum.
     pub(super) left_count: usize,
+    /// Half areas that no box of left and right exceeds, if sizes were looked at.
+    pub(super) largest: Option<[f32; 2]>,
     /// Sum over both sides of half area times number of blocks.
     pub(super) cost: f32,
 }
 
 impl Split {
     /// The cheapest plane by the surface-area heuristic in blocks of 2^`shift` primitives, `None`
-    /// if no plane separates the centres or the areas overflow.
+    /// if no plane separates the centres or the areas overflow. `largest`: the half area of the
+    /// largest box if sizes shall be looked at too.
     ///
     /// Wald 2007, "On fast Construction of SAH-based Bounding Volume Hierarchies".
-    pub(super) fn find(refs: &[PrimitiveRef], centers: &Bounds, shift: u32) -> Option<Self> {
-        if refs.len() <= 32 {
-            Self::find_among::<8>(refs, centers, shift)
-        } else {
-            Self::find_among::<16>(refs, centers, shift)
+    pub(super) fn find(
+        refs: &[PrimitiveRef],
+        centers: &Bounds,
+        largest: Option<f32>,
+        shift: u32,
+    ) -> Option<Self> {
+        match largest {
+            Some(area) => Self::among::<16, SPACE_AND_SIZE>(refs, centers, area, shift),
+            None if refs.len() <= 32 => Self::among::<8, SPACE>(refs, centers, 0.0, shift),
+            None => Self::among::<16, SPACE>(refs, centers, 0.0, shift),
         }
     }
 
-    fn find_among<const N: usize>(
+    fn among<const N: usize, const AXES: usize>(
         refs: &[PrimitiveRef],
         centers: &Bounds,
+        largest: f32,
         shift: u32,
     ) -> Option<Self> {
-        let grid = Grid::new(centers, N);
+        let grid = Grid::new(centers, N, largest);
         let mut chunks = Vec::new();
         let bins = if refs.len() <= 2 * CHUNK {
-            Bins::<N>::fill(refs, &grid)
+            Bins::<N, AXES>::fill(refs, &grid)
         } else {
             refs.par_chunks(CHUNK)
-                .map(|chunk| Bins::<N>::fill(chunk, &grid))
+                .map(|chunk| Bins::<N, AXES>::fill(chunk, &grid))
                 .collect_into_vec(&mut chunks);
             let mut sum = Bins::EMPTY;
             chunks.iter().for_each(|bins| sum.merge(bins));
             sum
         };
         let mut best: Option<(usize, usize, f32)> = None;
-        for axis in (0..3).filter(|&axis| grid.scale[axis] > 0.0) {
+        for axis in (0..AXES).filter(|&axis| axis == SPACE || grid.scale[axis] > 0.0) {
             if let Some((cell, cost)) = bins.cheapest(axis, shift)
                 && best.is_none_or(|(_, _, least)| cost < least)
             {
@@ -176,12 +212,21 @@ impl Split {
             }
         }
         let (axis, last, cost) = best?;
-        let left_of = |bins: &Bins<N>| bins.counts[axis][..=last].iter().sum::<u32>() as usize;
+        let left_of =
+            |bins: &Bins<N, AXES>| bins.counts[axis][..=last].iter().sum::<u32>() as usize;
         let join = |cells: &[Bounds]| cells.iter().fold(Bounds::EMPTY, |a, b| a.union(b));
         let (left, right) = bins.bounds[axis].split_at(last + 1);
+        let largest = (AXES == SPACE_AND_SIZE).then(|| {
+            let largest = |from| grid.largest_from(from, &bins.counts[SPACE]);
+            [
+                largest(0),
+                largest(if axis == SPACE { last + 1 } else { 0 }),
+            ]
+        });
         Some(Self {
             grid,
             axis,
+            largest,
             limit: cell(last),
             bounds: [join(left), join(right)],
             left: chunks.iter().map(left_of).collect(),
@@ -199,7 +244,7 @@ impl Split {
         mut right: &mut [PrimitiveRef],
     ) -> [Bounds; 2] {
         if self.left.is_empty() {
-            return self.part_chunk(refs, left, right);
+            return self.part_one(refs, left, right);
         }
         let mut pieces = Vec::with_capacity(self.left.len());
         for (chunk, &count) in refs.chunks(CHUNK).zip(&self.left) {
@@ -210,14 +255,27 @@ impl Split {
         }
         pieces
             .into_par_iter()
-            .map(|(chunk, left, right)| self.part_chunk(chunk, left, right))
+            .map(|(chunk, left, right)| self.part_one(chunk, left, right))
             .reduce(
                 || [Bounds::EMPTY; 2],
                 |a, b| [a[0].union(&b[0]), a[1].union(&b[1])],
             )
     }
 
-    fn part_chunk(
+    fn part_one(
+        &self,
+        refs: &[PrimitiveRef],
+        left: &mut [PrimitiveRef],
+        right: &mut [PrimitiveRef],
+    ) -> [Bounds; 2] {
+        if self.axis < SPACE {
+            self.part_chunk::<SPACE>(refs, left, right)
+        } else {
+            self.part_chunk::<SPACE_AND_SIZE>(refs, left, right)
+        }
+    }
+
+    fn part_chunk<const AXES: usize>(
         &self,
         refs: &[PrimitiveRef],
         left: &mut [PrimitiveRef],
@@ -230,7 +288,13 @@ impl Split {
         let (mut next_left, mut next_right) = (0, 0);
         for primitive in refs {
             let center = primitive.center();
-            let is_left = self.grid.cells(center).cmple(limit).bitmask() >> self.axis & 1;
+            let is_left = self
+                .grid
+                .cells::<AXES>(primitive, center)
+                .cmple(limit)
+                .bitmask()
+                >> self.axis
+                & 1;
             // Written to both sides, kept on one: no branch that guesses wrong half of the time.
             if let Some(place) = left.get_mut(next_left) {
                 *place = *primitive;
@@ -256,5 +320,71 @@ impl Extents {
         }
         let chunks = refs.par_chunks(CHUNK).map(Self::of);
         chunks.reduce(|| Self::EMPTY, Self::union)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::*;
+    use crate::math::Aabb;
+
+    fn split(boxes: &[Aabb], with_sizes: bool) -> (Vec<u32>, Vec<u32>, Split) {
+        let refs: Vec<_> = (0..)
+            .zip(boxes)
+            .map(|(i, b)| PrimitiveRef::new(i, b))
+            .collect();
+        let all = Extents::of(&refs);
+        let largest = with_sizes.then(|| all.bounds.half_area());
+        let split = Split::find(&refs, &all.centers, largest, 2).expect("can be parted");
+        let mut left = vec![PrimitiveRef::NOTHING; split.left_count];
+        let mut right = vec![PrimitiveRef::NOTHING; refs.len() - split.left_count];
+        let centers = split.part(&refs, &mut left, &mut right);
+        for (side, refs) in [&left, &right].into_iter().enumerate() {
+            let extents = Extents::of(refs);
+            assert_eq!(extents.bounds.aabb(), split.bounds[side].aabb());
+            assert_eq!(extents.centers.aabb(), centers[side].aabb());
+        }
+        let ids = |refs: &[PrimitiveRef]| refs.iter().map(PrimitiveRef::id).collect();
+        (ids(&left), ids(&right), split)
+    }
+
+    fn unit(x: f32, y: f32) -> Aabb {
+        let corner = Vec3::new(x, y, 0.0);
+        Aabb::from_points([corner, corner + Vec3::ONE])
+    }
+
+    #[test]
+    fn a_gap_parts_two_groups_of_any_length_in_their_order() {
+        for count in [8, 40, 3 * CHUNK + 5] {
+            let boxes: Vec<_> = (0..count)
+                .map(|i| unit((i % 3 / 2) as f32 * 100.0, (i % 7) as f32))
+                .collect();
+            let (left, right, _) = split(&boxes, false);
+            assert!(
+                left.into_iter()
+                    .eq((0..count as u32).filter(|i| i % 3 != 2))
+            );
+            assert!(
+                right
+                    .into_iter()
+                    .eq((0..count as u32).filter(|i| i % 3 == 2))
+            );
+        }
+    }
+
+    #[test]
+    fn a_wall_is_parted_from_small_boxes_by_its_size() {
+        let mut boxes: Vec<_> = (0..500)
+            .map(|i| unit((i % 20) as f32, (i / 20) as f32))
+            .collect();
+        boxes[123] = Aabb::from_points([Vec3::splat(-100.0), Vec3::new(120.0, 126.0, 101.0)]);
+        let (left, right, sizes) = split(&boxes, true);
+        assert_eq!((left, right.len()), (vec![123], 499));
+        let [large, small] = sizes.largest.expect("sizes were looked at");
+        assert!(large >= boxes[123].half_area() && (3.0..=8.0).contains(&small));
+        let (_, _, places) = split(&boxes, false);
+        assert!(sizes.cost < 0.1 * places.cost);
     }
 }

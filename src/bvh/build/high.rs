@@ -2,14 +2,14 @@ use rayon::prelude::*;
 
 use super::binary::{self, BinaryNode};
 use super::chunk::{Chunk, Subtree};
-use super::optimal::{Choice, DepthFirst, SERIAL, choose};
+use super::optimal::{Choice, Chooser, DepthFirst, SERIAL};
 use super::range::{Range, Rule};
 use super::reinsert::Reinsertion;
 use super::watch::Watch;
 use crate::bvh::node::{Child, Part, WIDTH};
 
-/// Trees deeper than this are not taken over; rays keep a stack in proportion to it.
-const MOST_DEPTH: usize = 100;
+/// Binary trees deeper than this are given up: what follows descends by recursion.
+const MOST_DEPTH: usize = 500;
 
 /// How many of all nodes each round looks at, in thousandths: the largest first, alone, because most
 /// is gained there, and what they block is free again in the next round.
@@ -37,13 +37,14 @@ pub(super) fn build(
     watch.advance(if count <= binary::SERIAL { count } else { 0 })?;
     let mut tree = Reinsertion::new(nodes);
     improve(&mut tree, count, watch)?;
-    let tree = DepthFirst::new(&tree.into_nodes());
-    watch.advance(0)?;
+    let tree = DepthFirst::new(&tree.into_nodes(), watch)?;
     if tree.depth > MOST_DEPTH {
         return Some(None);
     }
     let mut choices = vec![Choice::default(); tree.nodes.len()];
-    choose(&tree.nodes, &tree.counts, &mut choices, leaf_size);
+    let chooser = Chooser { leaf_size, watch };
+    chooser.choose(&tree.nodes, &tree.counts, &mut choices);
+    watch.advance(0)?;
     let emit = Emit {
         tree: &tree,
         choices: &choices,

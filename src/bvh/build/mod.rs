@@ -59,51 +59,61 @@ impl Bvh {
             .map(|id| PrimitiveRef::new(id, &bounds(id)))
             .collect();
         let chunk = build(refs, settings, progress)?;
-        let included = chunk.nodes.first().map_or(0, WideNode::primitives);
-        let (blocks, excluded) = (chunk.blocks, count - included);
-        let bvh = Self::new(chunk.nodes, blocks.len(), excluded, start.elapsed());
-        Some((bvh, blocks))
+        let tree = chunk.map(|Chunk { nodes, blocks }| {
+            let excluded = count - nodes.first().map_or(0, WideNode::primitives);
+            let bvh = Self::new(nodes, blocks.len(), excluded, start.elapsed());
+            (bvh, blocks)
+        });
+        match tree.filter(|(bvh, _)| bvh.wide_depth() <= MOST_WIDE_DEPTH) {
+            Some(tree) => Some(tree),
+            None => {
+                let quality = BvhQuality::Standard;
+                let settings = BvhSettings {
+                    quality,
+                    ..*settings
+                };
+                Self::build_with(count, bounds, &settings, progress)
+            }
+        }
     }
 }
 
-/// The tree over those of `refs` that are something.
+/// Trees of high quality that are deeper are not taken over: rays keep a stack in proportion to the
+/// depth. The standard build stays below this by itself.
+const MOST_WIDE_DEPTH: usize = 64;
+
+/// The tree over those of `refs` that are something; `Some(None)` if it would be far too deep.
 fn build(
     mut refs: Vec<PrimitiveRef>,
     settings: &BvhSettings,
     progress: &Progress<'_>,
-) -> Option<Chunk> {
+) -> Option<Option<Chunk>> {
     if refs.par_iter().any(PrimitiveRef::is_nothing) {
         refs.retain(|r| !r.is_nothing());
     }
     let is_high = settings.quality == BvhQuality::High && settings.kind == BvhKind::Sah;
-    let work = if is_high {
-        high::work(refs.len())
-    } else {
-        refs.len()
-    };
-    let watch = Watch::new(work, progress);
+    let work = if is_high { high::work } else { |n| n };
+    let watch = Watch::new(work(refs.len()), progress);
     watch.advance(0)?;
     let mut whole = Chunk::default();
     if refs.is_empty() {
-        return Some(whole);
+        return Some(Some(whole));
     }
     let nothing = (0..refs.len()).into_par_iter();
     let mut spare: Vec<_> = nothing.map(|_| PrimitiveRef::NOTHING).collect();
-    let mut tree = None;
-    if is_high {
-        let leaf_size = settings.leaf_size.clamp(1, 255);
-        tree = high::build(Range::new(&mut refs, &mut spare), leaf_size, &watch)?;
-    }
-    let tree = match tree {
-        Some(tree) => tree,
-        None => {
-            let range = Range::new(&mut refs, &mut spare);
-            wide::build(range, &Rule::new(settings), Depth::default(), &watch)?
-        }
+    let range = Range::new(&mut refs, &mut spare);
+    let tree = if is_high {
+        high::build(range, settings.leaf_size.clamp(1, 255), &watch)?
+    } else {
+        let rule = Rule::new(settings);
+        Some(wide::build(range, &rule, Depth::default(), &watch)?)
+    };
+    let Some(tree) = tree else {
+        return Some(None);
     };
     let root = whole.append(tree, 0);
     if whole.nodes.is_empty() {
         whole.nodes.push(WideNode::new(&[root], &[], 0));
     }
-    Some(whole)
+    Some(Some(whole))
 }

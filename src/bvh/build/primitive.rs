@@ -72,14 +72,6 @@ impl PrimitiveRef {
         }
     }
 
-    /// Something numbered `id` with a box that is known to be finite.
-    pub(super) fn of_bounds(id: u32, bounds: &Bounds) -> Self {
-        Self {
-            min: bounds.min.truncate().extend(f32::from_bits(id ^ NORMAL)),
-            max: bounds.max.truncate().extend(0.0),
-        }
-    }
-
     #[inline(always)]
     pub(super) fn bounds(&self) -> Bounds {
         Bounds {

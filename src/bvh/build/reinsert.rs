@@ -210,3 +210,113 @@ impl Reinsertion {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::ops::ControlFlow;
+
+    use glam::Vec3;
+
+    use super::super::primitive::PrimitiveRef;
+    use super::*;
+    use crate::math::Aabb;
+
+    /// A tree in which the boxes hang one below the other in the order given.
+    fn chain(boxes: &[Aabb]) -> Reinsertion {
+        let refs: Vec<_> = (0..)
+            .zip(boxes)
+            .map(|(i, b)| PrimitiveRef::new(i, b))
+            .collect();
+        let mut nodes = Vec::new();
+        for (i, r) in refs.iter().enumerate() {
+            let rest = refs[i..].iter().map(PrimitiveRef::bounds);
+            let rest = rest.reduce(|a, b| a.union(&b)).expect("not empty");
+            let at = nodes.len() as u32;
+            if i + 1 < refs.len() {
+                nodes.push(BinaryNode::inner(&rest, [at + 1, at + 2]));
+            }
+            nodes.push(BinaryNode::leaf(r));
+        }
+        Reinsertion::new(nodes)
+    }
+
+    /// Boxes in two far groups, taken from both in turn.
+    fn mixed() -> Vec<Aabb> {
+        let corner = |i: usize| {
+            let side = (i % 2 * 1000) as f32;
+            Vec3::new(
+                side + (i * 7 % 10) as f32,
+                (i * 3 % 11) as f32,
+                (i % 5) as f32,
+            )
+        };
+        let boxes = (0..40).map(|i| Aabb::from_points([corner(i), corner(i) + Vec3::ONE]));
+        boxes.collect()
+    }
+
+    #[test]
+    fn a_search_finds_the_best_of_all_places() {
+        let tree = chain(&mixed());
+        let area = tree.area();
+        let mut found = 0;
+        for node in 1..tree.nodes.len() as u32 {
+            if tree.parents[node as usize] == ROOT {
+                continue;
+            }
+            let mut best = 0.0_f64;
+            for target in 1..tree.nodes.len() as u32 {
+                let mut tried = Reinsertion::new(tree.nodes.clone());
+                let one = Move {
+                    saving: 0.0,
+                    node,
+                    target,
+                };
+                let is_around = target == tree.parents[node as usize];
+                if !is_around && tried.carry_out(one, &mut vec![false; tree.nodes.len()]) {
+                    best = best.max(area - tried.area());
+                }
+            }
+            let saving = tree
+                .search(node, &mut Vec::new())
+                .map_or(0.0, |one| one.saving);
+            assert!(
+                (f64::from(saving) - best).abs() < 1e-4 * area,
+                "{node}: {saving} {best}"
+            );
+            found += usize::from(saving > 0.0);
+        }
+        assert!(found > 20, "{found}");
+    }
+
+    #[test]
+    fn rounds_of_moves_undo_a_bad_tree_and_lose_nothing() {
+        let boxes = mixed();
+        let mut tree = chain(&boxes);
+        let go = |_| ControlFlow::Continue(());
+        let watch = Watch::new(1, &go);
+        let before = tree.area();
+        for _ in 0..10 {
+            let area = tree.area();
+            let saved = tree.improve(1000, &watch).expect("not stopped");
+            assert!(saved >= 0.0 && tree.area() <= area * 1.001);
+        }
+        assert!(tree.area() < 0.2 * before, "{} {before}", tree.area());
+        let mut seen = vec![false; boxes.len()];
+        let mut open = vec![ROOT];
+        while let Some(index) = open.pop() {
+            let node = &tree.nodes[index as usize];
+            match node.children() {
+                None => seen[node.primitive() as usize] = true,
+                Some(children) => {
+                    let [l, r] = children.map(|c| tree.nodes[c as usize].bounds());
+                    assert_eq!(l.union(&r).aabb(), node.bounds().aabb());
+                    assert_eq!(children.map(|c| tree.parents[c as usize]), [index; 2]);
+                    open.extend(children);
+                }
+            }
+        }
+        assert!(seen.into_iter().all(|s| s));
+        let stop = |_| ControlFlow::Break(());
+        assert!(tree.improve(1000, &Watch::new(1, &stop)).is_none());
+    }
+}
