@@ -5,8 +5,11 @@ use super::block::{Block, ID_LIMIT};
 use super::leaf::{LeafOrder, bounds};
 use super::refine::refine;
 use super::{Hit, Shapes};
-use crate::bvh::{BLOCK, Bvh, BvhQuality, BvhSettings, BvhStats, NodeId, Progress};
+use crate::bvh::{BLOCK, Bvh, BvhKind, BvhQuality, BvhSettings, BvhStats, NodeId, Progress};
 use crate::math::{Isa, Ray};
+
+/// Up to this many shapes a tree of high quality is built at once: it takes some 25 ms.
+const SMALL: usize = 16_384;
 
 /// Work done by traversal.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -31,6 +34,7 @@ pub struct Aggregate {
     pub(super) bvh: Bvh,
     pub(super) leaves: LeafOrder,
     leaf_size: u32,
+    is_refined: bool,
     isa: Isa,
 }
 
@@ -43,7 +47,7 @@ impl Aggregate {
 
     /// Like [`Self::build`]; reports the finished fraction (0 to 1, from any thread, not in order)
     /// to `progress`, which may stop the build. `None` if it did. High quality begins with the
-    /// standard tree; see [`Self::refined`].
+    /// standard tree, unless there are few shapes; see [`Self::refined`].
     pub fn build_with(
         shapes: Shapes,
         settings: BvhSettings,
@@ -51,12 +55,13 @@ impl Aggregate {
     ) -> Option<Self> {
         assert!(shapes.len() < ID_LIMIT as usize, "too many primitives");
         let bounds = |id| bounds(&shapes, id);
-        let first = match settings.quality {
-            BvhQuality::High => BvhQuality::Standard,
+        let is_refined = settings.quality == BvhQuality::High && shapes.len() <= SMALL;
+        let quality = match settings.quality {
+            BvhQuality::High if !is_refined => BvhQuality::Standard,
             quality => quality,
         };
         let first = BvhSettings {
-            quality: first,
+            quality,
             ..settings
         };
         let (bvh, ids) = Bvh::build_with(shapes.len(), &bounds, &first, progress)?;
@@ -66,8 +71,14 @@ impl Aggregate {
             bvh,
             leaves,
             leaf_size: settings.leaf_size,
+            is_refined: is_refined || settings.kind != BvhKind::Sah,
             isa: Isa::best(),
         })
+    }
+
+    /// True when [`Self::refined`] would gain nothing.
+    pub fn is_refined(&self) -> bool {
+        self.is_refined
     }
 
     /// Another hierarchy over the same (shared) shapes that costs rays less and takes longer to
@@ -80,6 +91,7 @@ impl Aggregate {
             bvh,
             leaves,
             leaf_size: self.leaf_size,
+            is_refined: true,
             isa: self.isa,
         })
     }

@@ -23,6 +23,7 @@ mod tests {
     use std::sync::atomic::{AtomicUsize, Ordering};
 
     use super::*;
+    use crate::bvh::BvhStats;
     use crate::geometry::Aggregate;
 
     /// A sheet of 2 n² triangles.
@@ -43,23 +44,20 @@ mod tests {
 
     #[test]
     fn a_refined_aggregate_shares_its_shapes_and_costs_no_more() {
-        let fast = BvhSettings {
-            quality: BvhQuality::Fast,
+        let standard = BvhSettings {
+            quality: BvhQuality::Standard,
             ..BvhSettings::default()
         };
-        let first = Aggregate::build(sheet(60), fast);
+        let first = Aggregate::build(sheet(60), standard);
         let refined = first
             .refined(&|_| ControlFlow::Continue(()))
             .expect("nothing stops it");
         assert!(std::ptr::eq(first.shapes(), refined.shapes()));
         let (before, after) = (first.stats(), refined.stats());
         assert_eq!(before.primitives, after.primitives);
-        assert!(
-            after.sah_cost < before.sah_cost,
-            "{} >= {}",
-            after.sah_cost,
-            before.sah_cost
-        );
+        let visits = |stats: &BvhStats| stats.expected_nodes + stats.expected_blocks;
+        let (before, after) = (visits(&before), visits(&after));
+        assert!(after <= before, "{after} > {before}");
     }
 
     #[test]

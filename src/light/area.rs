@@ -45,8 +45,33 @@ pub struct AreaLight {
     two_sided: bool,
     density: AreaDensity,
     area: f32,
-    /// Chooses among triangles by area; nothing when the whole area is zero.
+    /// Chooses among `parts` by area; nothing when the whole area is zero.
     by_area: Option<Distribution1d>,
+    /// The triangles or the rectangle, at hand for sampling.
+    parts: Vec<Part>,
+}
+
+/// A triangle or parallelogram of an area light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Part {
+    corner: Vec3,
+    edge_1: Vec3,
+    edge_2: Vec3,
+    /// Unit; nothing for a part without area.
+    normal: Option<Vec3>,
+    primitive: u32,
+}
+
+impl Part {
+    fn new(corner: Vec3, edge_1: Vec3, edge_2: Vec3, primitive: u32) -> Self {
+        Self {
+            corner,
+            edge_1,
+            edge_2,
+            normal: edge_1.cross(edge_2).try_normalize(),
+            primitive,
+        }
+    }
 }
 
 impl AreaLight {
@@ -55,13 +80,22 @@ impl AreaLight {
     /// The ids of [`AreaShape::Triangles`] must be of triangles of `shapes`. Degenerate triangles
     /// emit nothing.
     pub fn new(shapes: &Shapes, shape: AreaShape, radiance: Rgb, two_sided: bool) -> Self {
-        let areas: Vec<f32> = match &shape {
-            AreaShape::Triangles { primitives } => primitives
-                .iter()
-                .map(|&id| triangle_area(shapes.vertices(id as usize)))
-                .collect(),
-            AreaShape::Rectangle { edge_u, edge_v, .. } => vec![edge_u.cross(*edge_v).length()],
+        let (parts, share): (Vec<_>, f32) = match &shape {
+            AreaShape::Triangles { primitives } => {
+                let parts = primitives.iter().map(|&id| {
+                    let [p0, p1, p2] = shapes.vertices(id as usize);
+                    Part::new(p0, p1 - p0, p2 - p0, id)
+                });
+                (parts.collect(), 0.5)
+            }
+            &AreaShape::Rectangle {
+                corner,
+                edge_u,
+                edge_v,
+            } => (vec![Part::new(corner, edge_u, edge_v, u32::MAX)], 1.0),
         };
+        let area = |part: &Part| share * part.edge_1.cross(part.edge_2).length();
+        let areas: Vec<f32> = parts.iter().map(area).collect();
         let usable = areas.iter().filter(|area| area.is_finite());
         Self {
             shape,
@@ -70,6 +104,7 @@ impl AreaLight {
             density: AreaDensity::Correct,
             area: usable.map(|&area| f64::from(area)).sum::<f64>() as f32,
             by_area: Distribution1d::new(&areas),
+            parts,
         }
     }
 
@@ -111,14 +146,8 @@ impl AreaLight {
     }
 
     /// A point evenly spread over the area.
-    pub(super) fn sample(
-        &self,
-        shapes: &Shapes,
-        from: Vec3,
-        u_choice: f32,
-        u: Vec2,
-    ) -> Option<LightSample> {
-        let (point, normal, primitive) = self.point_on(shapes, u_choice, u)?;
+    pub(super) fn sample(&self, from: Vec3, u_choice: f32, u: Vec2) -> Option<LightSample> {
+        let (point, normal, primitive) = self.point_on(u_choice, u)?;
         let (wi, distance) = direction_to(from, point)?;
         let hit = LightHit {
             point,
@@ -170,29 +199,13 @@ impl AreaLight {
     }
 
     /// Point, unit normal and primitive.
-    fn point_on(&self, shapes: &Shapes, u_choice: f32, u: Vec2) -> Option<(Vec3, Vec3, u32)> {
-        let chosen = self.choose_part(u_choice)?;
-        match &self.shape {
-            AreaShape::Triangles { primitives } => {
-                let primitive = primitives[chosen];
-                let [p0, p1, p2] = shapes.vertices(primitive as usize);
-                let (b1, b2) = uniform_triangle(u);
-                let (edge_1, edge_2) = (p1 - p0, p2 - p0);
-                let point = p0 + b1 * edge_1 + b2 * edge_2;
-                Some((point, edge_1.cross(edge_2).try_normalize()?, primitive))
-            }
-            AreaShape::Rectangle {
-                corner,
-                edge_u,
-                edge_v,
-            } => {
-                let point = *corner + u.x * *edge_u + u.y * *edge_v;
-                Some((point, edge_u.cross(*edge_v).try_normalize()?, u32::MAX))
-            }
-        }
+    fn point_on(&self, u_choice: f32, u: Vec2) -> Option<(Vec3, Vec3, u32)> {
+        let part = &self.parts[self.choose_part(u_choice)?];
+        let (b1, b2) = match self.shape {
+            AreaShape::Triangles { .. } => uniform_triangle(u),
+            AreaShape::Rectangle { .. } => (u.x, u.y),
+        };
+        let point = part.corner + b1 * part.edge_1 + b2 * part.edge_2;
+        Some((point, part.normal?, part.primitive))
     }
-}
-
-fn triangle_area([p0, p1, p2]: [Vec3; 3]) -> f32 {
-    0.5 * (p1 - p0).cross(p2 - p0).length()
 }

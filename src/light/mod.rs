@@ -98,7 +98,7 @@ impl Light {
         u: Vec2,
     ) -> Option<LightSample> {
         match self {
-            Self::Area(area) => area.sample(shapes, from, u_choice, u),
+            Self::Area(area) => area.sample(from, u_choice, u),
             Self::Sphere(sphere) => sphere.sample(shapes, from, u),
             Self::Point(point) => point.sample(from),
             Self::Spot(spot) => spot.sample(from),

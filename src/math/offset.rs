@@ -36,19 +36,44 @@ pub fn offset_origin(point: Vec3, error: Vec3, normal: Vec3, direction: Vec3) ->
     )
 }
 
+/// The finite `value`'s neighbour in the direction of `offset`, without a branch.
+#[inline(always)]
 fn outward(value: f32, offset: f32) -> f32 {
-    if offset > 0.0 {
-        value.next_up()
-    } else if offset < 0.0 {
-        value.next_down()
-    } else {
-        value
+    let step = i32::from(offset > 0.0) - i32::from(offset < 0.0);
+    let bits = value.to_bits().cast_signed();
+    // The bits of negative numbers grow downwards.
+    let sign = 1 | (bits >> 31);
+    let moved = f32::from_bits(bits.wrapping_add(step * sign).cast_unsigned());
+    let from_zero = f32::from_bits(1).copysign(offset);
+    match (value == 0.0, step == 0) {
+        (_, true) => value,
+        (true, _) => from_zero,
+        _ => moved,
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn outward_is_the_next_number() {
+        for value in [
+            0.0,
+            -0.0,
+            1.0,
+            -1.0,
+            f32::MIN_POSITIVE,
+            -1e-40,
+            1e-45,
+            3e38,
+            -1e-45,
+        ] {
+            assert_eq!(outward(value, 0.0).to_bits(), value.to_bits());
+            assert_eq!(outward(value, 0.5), value.next_up());
+            assert_eq!(outward(value, -0.5), value.next_down());
+        }
+    }
 
     #[test]
     fn the_origin_leaves_the_error_box_on_the_side_of_the_direction() {

@@ -47,6 +47,9 @@ impl Distribution1d {
     ///
     /// Entries of weight zero are never chosen.
     pub fn sample(&self, u: f32) -> (usize, f32, f32) {
+        if self.cdf.len() == 2 {
+            return (0, 1.0, u.clamp(0.0, ONE_MINUS_EPSILON));
+        }
         let u = f64::from(u).clamp(0.0, f64::from(ONE_MINUS_EPSILON));
         let (index, remapped) = invert(&self.cdf, u);
         (index, self.pmf(index), remapped)

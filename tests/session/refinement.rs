@@ -8,9 +8,9 @@ use super::*;
 /// Enough for a render never to end by itself in a test.
 const ENDLESS: u32 = 10_000_000;
 
-/// A bumpy floor of 2 · 60² triangles in a box, enough to be worth refining.
+/// A bumpy floor of 2 · 95² triangles in a box, enough to be worth refining.
 fn bumpy_scene() -> Arc<Scene> {
-    const N: u32 = 60;
+    const N: u32 = 95;
     let mut builder = cornell_box("bumpy box");
     let grey = builder.diffuse("grey", softbox::color::Rgb::splat(0.7));
     let positions = (0..=N)

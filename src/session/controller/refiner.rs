@@ -72,7 +72,7 @@ impl Refiner {
         let primitives = scene.shapes().len();
         let is_interactive = shared.options.interactive;
         let pays = is_interactive || is_worth_it(primitives, settings, picture.counts());
-        if self.is_done || primitives == 0 || !pays {
+        if self.is_done || scene.aggregate().is_refined() || !pays {
             return;
         }
         let scene = Arc::clone(scene);
