@@ -29,6 +29,7 @@ mod tests {
 
     use super::*;
     use crate::geometry::Aggregate;
+    use crate::math::Isa;
 
     /// A sheet of 2 n² triangles.
     fn sheet(n: u32) -> Shapes {
@@ -53,11 +54,12 @@ mod tests {
             quality: BvhQuality::Fast,
             ..BvhSettings::default()
         };
-        let first = Aggregate::build(sheet(60), fast);
+        let first = Aggregate::build(sheet(60), fast).with_isa(Isa::Portable);
         let refined = first
             .refined(&|_| ControlFlow::Continue(()))
             .expect("nothing stops it");
         assert!(std::ptr::eq(first.shapes(), refined.shapes()));
+        assert_eq!(refined.isa(), Isa::Portable);
         let (before, after) = (first.stats(), refined.stats());
         assert_eq!(before.primitives, after.primitives);
         assert!(
