@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::bvh::BvhSettings;
 use crate::image::Region;
+use crate::math::Isa;
 
 /// How direct light is estimated. All modes converge to the same picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -213,6 +214,10 @@ pub struct RenderSettings {
     pub bvh: BvhSettings,
     /// Worker threads; 0 = all cores. Never changes the picture.
     pub threads: usize,
+    /// Instruction set to trace with; the best of this processor when `None`. Never changes the
+    /// picture. Not stored: it belongs to one run on one machine.
+    #[serde(skip)]
+    pub isa: Option<Isa>,
     /// When to stop.
     pub stop: StopRule,
     /// What the picture shows.
@@ -235,6 +240,7 @@ impl Default for RenderSettings {
             course_compatible: false,
             bvh: BvhSettings::default(),
             threads: 0,
+            isa: None,
             stop: StopRule::default(),
             view: View::Render,
         }
@@ -253,6 +259,11 @@ impl RenderSettings {
         self.region
             .and_then(|r| r.clipped(self.width, self.height))
             .unwrap_or(whole)
+    }
+
+    /// The instruction set that `isa` stands for.
+    pub fn instruction_set(&self) -> Isa {
+        self.isa.unwrap_or_else(Isa::best)
     }
 
     /// The worker threads that `threads` stands for.

@@ -34,6 +34,7 @@ use std::path::PathBuf;
 
 use anyhow::Context;
 use clap::Parser;
+use softbox::math::Isa;
 
 use ray_bench::{Protocol, SCENES, SceneResult, System, contest, ours, subject, write_table};
 
@@ -96,7 +97,8 @@ fn main() -> anyhow::Result<()> {
 
 /// The wanted systems, in the order in which they were asked for.
 fn systems(options: &Options, out: &mut impl Write) -> anyhow::Result<Vec<System>> {
-    let mut all = vec![ours(), bvh_crate::system()];
+    let isa = options.protocol.isa.unwrap_or_else(Isa::best);
+    let mut all = vec![ours(isa), bvh_crate::system()];
     all.extend(obvhs_crate::systems());
     let of_environment = std::env::var("SOFTBOX_EMBREE").ok();
     let path = options.embree.as_ref().or(of_environment.as_ref());

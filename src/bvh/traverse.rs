@@ -9,6 +9,10 @@ use crate::math::{Isa, Ray};
 /// Batches up to this size are traced one ray after the other.
 const FEW_RAYS: usize = 4;
 
+/// In trees up to this size too: so few steps do not repay the work of keeping many rays in flight.
+/// One ray after the other is up to 1.5 times as fast with one node, 0.83 to 1.17 times with eleven.
+const FEW_NODES: usize = 3;
+
 impl Bvh {
     /// Leads `rays` through the tree, near boxes first, and shows `leaves` every leaf that they
     /// meet. `answer` takes the number of each ray and its query, `None` if the ray can meet
@@ -42,7 +46,7 @@ impl Bvh {
             is_enough(STACK, self.wide_depth()),
             "the build bounds the depth"
         );
-        if rays.len() <= FEW_RAYS {
+        if rays.len() <= FEW_RAYS || self.nodes().len() <= FEW_NODES {
             let kernel = Single::<_, _, ANY, STACK> {
                 bvh: self,
                 leaves,

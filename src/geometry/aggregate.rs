@@ -105,6 +105,11 @@ impl Aggregate {
         Self { isa, ..self }
     }
 
+    /// The instruction set that traces; never changes a hit.
+    pub fn isa(&self) -> Isa {
+        self.isa
+    }
+
     /// Ids of all primitives below a node of [`Self::bvh`].
     pub fn primitives(&self, node: NodeId) -> impl Iterator<Item = u32> + '_ {
         let blocks = &self.leaves.blocks()[self.bvh.blocks(node)];

@@ -109,7 +109,7 @@ impl Query {
     fn triangles(&mut self, (ray, slab): (&Ray, &SlabRay), block: &Block) {
         let edges = self.shear.edges(slab.origin(), block);
         let on_edge = edges.on_edge();
-        let inside = edges.inside().bitmask() & !on_edge;
+        let inside = edges.inside() & !on_edge;
         if on_edge != 0 {
             self.triangles_on_edges((ray, slab), block, on_edge);
         }

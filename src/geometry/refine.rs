@@ -25,6 +25,7 @@ mod tests {
     use super::*;
     use crate::bvh::BvhStats;
     use crate::geometry::Aggregate;
+    use crate::math::Isa;
 
     /// A sheet of 2 n² triangles.
     fn sheet(n: u32) -> Shapes {
@@ -48,11 +49,12 @@ mod tests {
             quality: BvhQuality::Standard,
             ..BvhSettings::default()
         };
-        let first = Aggregate::build(sheet(60), standard);
+        let first = Aggregate::build(sheet(60), standard).with_isa(Isa::Portable);
         let refined = first
             .refined(&|_| ControlFlow::Continue(()))
             .expect("nothing stops it");
         assert!(std::ptr::eq(first.shapes(), refined.shapes()));
+        assert_eq!(refined.isa(), Isa::Portable);
         let (before, after) = (first.stats(), refined.stats());
         assert_eq!(before.primitives, after.primitives);
         let visits = |stats: &BvhStats| stats.expected_nodes + stats.expected_blocks;

@@ -1,4 +1,4 @@
-use glam::{BVec4A, DVec3, Vec3, Vec4};
+use glam::{DVec3, Vec3, Vec4};
 
 use super::block::Block;
 use crate::math::{Aabb, Ray, gamma};
@@ -33,12 +33,12 @@ pub(super) struct Edges {
 }
 
 impl Edges {
-    /// True for each triangle around which the edge functions agree in sign.
+    /// A bit for each triangle around which the edge functions agree in sign.
     #[inline(always)]
-    pub(super) fn inside(&self) -> BVec4A {
+    pub(super) fn inside(&self) -> u32 {
         let least = self.u.min(self.v).min(self.w);
         let most = self.u.max(self.v).max(self.w);
-        least.cmpge(Vec4::ZERO) | most.cmple(Vec4::ZERO)
+        (least.cmpge(Vec4::ZERO) | most.cmple(Vec4::ZERO)).bitmask()
     }
 
     /// A bit for each triangle with an edge function of zero, which may be a rounding.

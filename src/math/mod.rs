@@ -9,7 +9,7 @@ mod ray;
 
 pub use aabb::Aabb;
 pub use frame::Frame;
-pub use isa::Isa;
+pub use isa::{Isa, IsaError};
 pub use normalization::Normalization;
 pub use offset::{SHADOW_T_MAX, gamma, offset_origin};
 pub use ray::Ray;

@@ -15,7 +15,7 @@ use crate::bvh::BvhSettings;
 use crate::color::Rgb;
 use crate::geometry::{Aggregate, Mesh, Shapes, Sphere};
 use crate::light::{AreaLight, AreaShape, Light, SphereLight};
-use crate::math::Normalization;
+use crate::math::{Isa, Normalization};
 
 /// The choices that shape the runtime scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -24,6 +24,8 @@ pub struct PrepareSettings {
     pub bvh: BvhSettings,
     /// Reproduce the course program's picture with its errors.
     pub course_compatible: bool,
+    /// Instruction set to trace with; the best of this processor when `None`. Must be available.
+    pub isa: Option<Isa>,
 }
 
 /// Makes `scene` ready for tracing; `None` when `progress` (stage, fraction 0..1) breaks.
@@ -59,7 +61,8 @@ pub fn prepare(
     let sampler = table.sampler(&shapes);
     let aggregate = Aggregate::build_with(shapes, settings.bvh, &|fraction| {
         progress("building the BVH", fraction)
-    })?;
+    })?
+    .with_isa(settings.isa.unwrap_or_else(Isa::best));
     let instance_names = scene
         .instances
         .iter()

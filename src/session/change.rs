@@ -25,6 +25,7 @@ impl Change {
         if !Arc::ptr_eq(&old.scene, &new.scene)
             || needs_new_tree(&a.bvh, &b.bvh)
             || a.course_compatible != b.course_compatible
+            || a.isa != b.isa
         {
             return Self::Scene;
         }
@@ -60,6 +61,7 @@ fn needs_new_tree(old: &BvhSettings, new: &BvhSettings) -> bool {
 mod tests {
     use super::*;
     use crate::camera::Camera;
+    use crate::math::Isa;
     use crate::scene::Scene;
     use crate::settings::{RenderSettings, View};
 
@@ -87,6 +89,10 @@ mod tests {
         assert_eq!(with(|j| j.settings.bvh.leaf_size = 9), Change::Scene);
         assert_eq!(
             with(|j| j.settings.bvh.quality = BvhQuality::Standard),
+            Change::Scene
+        );
+        assert_eq!(
+            with(|j| j.settings.isa = Some(Isa::Portable)),
             Change::Scene
         );
         let mut standard = job.clone();

@@ -3,7 +3,7 @@
 use glam::Vec3;
 use softbox::bvh::{BvhKind, BvhSettings};
 use softbox::geometry::{Aggregate, Hit, Shapes, Sphere, TraceCounts};
-use softbox::math::Ray;
+use softbox::math::{Isa, Ray};
 
 /// A small generator of random numbers (Marsaglia 2003, "Xorshift RNGs").
 pub(crate) struct Random(u64);
@@ -62,7 +62,10 @@ pub(crate) fn brute_force(shapes: Shapes) -> Aggregate {
 /// The same shapes in every form that the tracer has, each with its name: all must give the same
 /// hits, bit for bit, and pass every test.
 pub(crate) fn aggregates(shapes: &Shapes, settings: BvhSettings) -> Vec<(&'static str, Aggregate)> {
-    vec![("default", Aggregate::build(shapes.clone(), settings))]
+    let built = Aggregate::build(shapes.clone(), settings);
+    Isa::available()
+        .map(|isa| (isa.name(), built.clone().with_isa(isa)))
+        .collect()
 }
 
 pub(crate) fn closest(aggregate: &Aggregate, rays: &[Ray]) -> Vec<Hit> {

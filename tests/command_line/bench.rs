@@ -1,6 +1,7 @@
 //! `softbox bench --rays`.
 
 use serde_json::Value;
+use softbox::math::Isa;
 
 use crate::{errors, folder_with, run, softbox, status};
 
@@ -25,6 +26,7 @@ fn every_kind_of_rays_is_measured_and_right() {
         (&scene["scene"], &scene["triangles"]),
         (&"box36".into(), &36.into())
     );
+    assert_eq!(scene["isa"], Isa::best().name());
     assert_eq!(scene["rays"][0], serde_json::json!(["primary", 32 * 24]));
     let builds = scene["builds"].as_array().unwrap();
     assert_eq!(builds.len(), 2);

@@ -8,6 +8,7 @@ mod course;
 mod describe;
 mod ending;
 mod faulty;
+mod instruction_sets;
 mod render;
 mod same_bits;
 

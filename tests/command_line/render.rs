@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use serde_json::Value;
 use softbox::color::Rgb;
 use softbox::io::picture::{Metadata, read_png, write_exr, write_hdr};
+use softbox::math::Isa;
 use softbox::settings::View;
 
 use crate::{errors, folder_with, mean, names, pixels, run, softbox, status};
@@ -12,13 +13,14 @@ use crate::{errors, folder_with, mean, names, pixels, run, softbox, status};
 const SCENE: &str = "cornell-spheres";
 
 /// The keys that scripts rely on.
-const KEYS: [&str; 23] = [
+const KEYS: [&str; 24] = [
     "scene",
     "width",
     "height",
     "spp_mean",
     "spp_max",
     "threads",
+    "isa",
     "seed",
     "mode",
     "max_depth",
@@ -62,6 +64,7 @@ fn the_json_object_has_the_promised_keys_and_sane_values() {
         ("spp_mean", 8.0.into()),
         ("spp_max", 8.into()),
         ("threads", 2.into()),
+        ("isa", Isa::best().name().into()),
         ("seed", 5.into()),
         ("mode", "importance".into()),
         ("max_depth", "inf".into()),

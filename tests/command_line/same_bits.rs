@@ -10,7 +10,7 @@ use tempfile::TempDir;
 
 use crate::{folder_with, run, softbox, status};
 
-fn bits(folder: &TempDir, name: &str) -> Vec<[u32; 3]> {
+pub(crate) fn bits(folder: &TempDir, name: &str) -> Vec<[u32; 3]> {
     let pixels = crate::pixels(folder, name);
     pixels
         .iter()

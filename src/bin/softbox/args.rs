@@ -1,4 +1,4 @@
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::path::PathBuf;
 
 use clap::error::ErrorKind;
@@ -6,6 +6,7 @@ use clap::{Args, CommandFactory, Parser, Subcommand};
 use softbox::settings::RenderSettings;
 
 use crate::course_args::CourseArgs;
+use crate::isa;
 use crate::job::Job;
 use crate::ray_bench::Protocol;
 use crate::settings_args::SettingsArgs;
@@ -170,12 +171,14 @@ pub(crate) struct BenchArgs {
     pub(crate) json: bool,
 }
 
-/// Reads a command line, its first word being the program's name.
+/// Reads a command line, its first word being the program's name; `isa` is the value of
+/// [`isa::VARIABLE`].
 ///
 /// # Errors
 /// For wrong usage, and to show help or version; `exit` of the error does the right thing.
 pub(crate) fn parse(
     words: impl IntoIterator<Item = impl Into<OsString> + Clone>,
+    isa: Option<&OsStr>,
 ) -> Result<Request, clap::Error> {
     let cli = Cli::try_parse_from(words)?;
     let request = match cli.command {
@@ -185,7 +188,22 @@ pub(crate) fn parse(
         Some(Command::Bench(args)) => Ok(Request::Bench(args)),
         None => plain_request(cli.plain),
     };
-    request.map_err(|message| Cli::command().error(ErrorKind::ValueValidation, message))
+    request
+        .and_then(|request| request.with_variable(isa))
+        .map_err(|message| Cli::command().error(ErrorKind::ValueValidation, message))
+}
+
+impl Request {
+    /// With the instruction set that `variable` forces, unless an option does.
+    fn with_variable(mut self, variable: Option<&OsStr>) -> Result<Self, String> {
+        let isa = match &mut self {
+            Self::View(job, _) | Self::Render(job, _) => &mut job.settings.isa,
+            Self::Bench(args) => &mut args.protocol.isa,
+            Self::Info(_) | Self::Compare(_) => return Ok(self),
+        };
+        *isa = isa::forced(*isa, variable)?;
+        Ok(self)
+    }
 }
 
 fn plain_request(args: PlainArgs) -> Result<Request, String> {

@@ -1,6 +1,7 @@
 use std::io::Write;
 
 use anyhow::Context;
+use softbox::math::Isa;
 
 use crate::args::BenchArgs;
 use crate::exit::{Failure, Status};
@@ -12,7 +13,8 @@ pub(crate) fn run(args: &BenchArgs) -> Result<(), Failure> {
     if scenes.is_empty() {
         scenes.extend(SCENES);
     }
-    let systems = [ours()];
+    let isa = args.protocol.isa.unwrap_or_else(Isa::best);
+    let systems = [ours(isa)];
     let mut results: Vec<SceneResult> = Vec::new();
     for name in scenes {
         let subject = subject(name).map_err(Status::Scene.because())?;

@@ -122,6 +122,7 @@ fn add_settings(line: &mut Line, settings: &RenderSettings) {
     );
     let quality = s.bvh.quality;
     line.unless_default("--bvh-quality", quality, d.bvh.quality, name_of(quality));
+    line.maybe("--isa", s.isa);
     line.unless_default("--threads", s.threads, d.threads, s.threads.to_string());
 }
 

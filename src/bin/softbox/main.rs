@@ -7,6 +7,7 @@ mod compare;
 mod course_args;
 mod exit;
 mod info;
+mod isa;
 mod job;
 #[cfg(not(feature = "viewer"))]
 mod no_viewer;
@@ -32,7 +33,8 @@ use exit::Failure;
 use no_viewer as viewer;
 
 fn main() -> ExitCode {
-    let request = match args::parse(std::env::args_os()) {
+    let forced = std::env::var_os(isa::VARIABLE);
+    let request = match args::parse(std::env::args_os(), forced.as_deref()) {
         Ok(request) => request,
         // Prints to the right stream; status 2 for errors, 0 for help and version.
         Err(error) => error.exit(),

@@ -25,6 +25,7 @@ pub(crate) fn metadata(
     metadata.set("samples", format!("0..{}", snapshot.samples_max));
     metadata.set("samples-mean", snapshot.samples_mean.to_string());
     metadata.set("seconds", format!("{:.3}", snapshot.seconds));
+    metadata.set("isa", snapshot.settings.instruction_set().name());
     metadata.set("view", snapshot.view.name());
     if let Some(error) = snapshot.relative_error {
         metadata.set("relative-error", error.to_string());

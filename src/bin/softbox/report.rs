@@ -4,6 +4,7 @@ use std::io::Write;
 
 use anyhow::Context;
 use serde::Serialize;
+use softbox::math::Isa;
 use softbox::scene::Scene;
 use softbox::session::{SessionStatus, Snapshot, TreeState};
 
@@ -29,6 +30,8 @@ struct Report<'a> {
     spp_mean: f64,
     spp_max: u32,
     threads: usize,
+    /// The instruction set that was used.
+    isa: Isa,
     seed: u64,
     mode: &'a str,
     max_depth: String,
@@ -87,6 +90,7 @@ pub(crate) fn print_json(facts: &Facts<'_>) -> Result<(), Failure> {
         spp_mean: facts.snapshot.samples_mean,
         spp_max: facts.snapshot.samples_max,
         threads: settings.thread_count(),
+        isa: settings.instruction_set(),
         seed: settings.seed,
         mode: settings.mode.name(),
         max_depth: settings.max_depth.to_string(),

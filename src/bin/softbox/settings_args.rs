@@ -5,6 +5,7 @@ use glam::DVec3;
 use softbox::bvh::{BvhKind, BvhQuality};
 use softbox::display::{DisplaySettings, ToneCurve};
 use softbox::image::Region;
+use softbox::math::Isa;
 use softbox::settings::{
     Adaptive, AdaptiveRule, CameraRule, IntegratorKind, MaxDepth, Mode, RenderSettings, View,
 };
@@ -69,6 +70,9 @@ pub(crate) struct SettingsArgs {
     /// Effort for the hierarchy: fast, standard, or high, which goes on while the picture renders
     #[arg(long, value_name = "QUALITY", value_parser = values::named::<BvhQuality>)]
     pub(crate) bvh_quality: Option<BvhQuality>,
+    /// Instruction set: portable or avx2 [default: SOFTBOX_ISA, else the best of this processor]
+    #[arg(long, value_parser = Isa::usable)]
+    pub(crate) isa: Option<Isa>,
     /// Reproduce the course program's picture with its errors: light, exposure, gamma, view, normals
     #[arg(long)]
     pub(crate) course_compatible: bool,
@@ -142,6 +146,7 @@ impl SettingsArgs {
         set(&mut settings.bvh.quality, self.bvh_quality);
         set(&mut settings.threads, self.threads);
         set(&mut settings.view, self.view);
+        settings.isa = self.isa.or(settings.isa);
         settings.stop.samples_per_pixel = self.spp.or(settings.stop.samples_per_pixel);
         settings.stop.seconds = self.time_limit;
         settings.stop.relative_error = self.target_error;

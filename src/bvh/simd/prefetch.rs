@@ -1,4 +1,7 @@
-#![expect(unsafe_code, reason = "the prefetch instruction takes a pointer")]
+#![cfg_attr(
+    target_arch = "x86_64",
+    expect(unsafe_code, reason = "the prefetch instruction takes a pointer")
+)]
 
 /// Asks the processor for the first `lines` cache lines at `address`, which will be needed soon; the
 /// address may be any. Does nothing on architectures without a stable prefetch.

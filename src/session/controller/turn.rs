@@ -215,6 +215,7 @@ impl<'a> Turn<'a> {
         let settings = PrepareSettings {
             bvh: job.settings.bvh,
             course_compatible: job.settings.course_compatible,
+            isa: job.settings.isa,
         };
         let started = Instant::now();
         let prepared = self

@@ -5,12 +5,13 @@ use glam::DVec3;
 use softbox::bvh::{BvhKind, BvhQuality};
 use softbox::display::ToneCurve;
 use softbox::image::Region;
+use softbox::math::Isa;
 use softbox::settings::{AdaptiveRule, CameraRule, IntegratorKind, MaxDepth, Mode, View};
 
 use crate::job::FieldOfView;
 
 fn request(line: &str) -> Request {
-    parse(line.split_whitespace()).unwrap_or_else(|error| panic!("{line}: {error}"))
+    parse(line.split_whitespace(), None).unwrap_or_else(|error| panic!("{line}: {error}"))
 }
 
 fn headless(line: &str) -> Job {
@@ -21,7 +22,7 @@ fn headless(line: &str) -> Job {
 }
 
 fn wrong(line: &str) -> String {
-    let error = parse(line.split_whitespace()).unwrap_err();
+    let error = parse(line.split_whitespace(), None).unwrap_err();
     assert_eq!(error.exit_code(), 2, "{line}");
     error.to_string()
 }
@@ -140,7 +141,7 @@ fn render_takes_every_long_option() {
         "softbox render x.dae -o a.png -o b.exr --size 640x480 --region 1,2,3,4 --spp 9 \
          --light-samples 2 --max-depth inf --only-last-bounce --mode importance \
          --integrator reference --adaptive 8,0.5 --adaptive-rule course --seed 42 \
-         --time-limit 1.5 --target-error 0.01 --view normals --threads 3 --bvh median \
+         --time-limit 1.5 --target-error 0.01 --view normals --threads 3 --isa portable --bvh median \
          --leaf-size 8 --bvh-quality fast --exposure -2.5 --tone-curve reinhard --camera-rule fit \
          --eye -1,2,3 --target 0,-1,0 --up 0,0,1 --xfov 31 --lens-radius 0.1 \
          --focal-distance 2 --environment sky.hdr",
@@ -158,6 +159,7 @@ fn render_takes_every_long_option() {
     );
     assert_eq!((s.bvh.kind, s.bvh.leaf_size), (BvhKind::Median, 8));
     assert_eq!(s.bvh.quality, BvhQuality::Fast);
+    assert_eq!(s.isa, Some(Isa::Portable));
     assert_eq!(
         (s.stop.samples_per_pixel, s.stop.seconds),
         (Some(9), Some(1.5))

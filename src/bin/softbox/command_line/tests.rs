@@ -4,10 +4,11 @@ use super::*;
 use crate::args::{Request, parse};
 use softbox::bvh::{BvhKind, BvhQuality, BvhSettings};
 use softbox::image::Region;
+use softbox::math::Isa;
 use softbox::settings::{Adaptive, CameraRule, IntegratorKind, MaxDepth, Mode, StopRule, View};
 
 fn job_of(words: &[String]) -> Job {
-    match parse(words).unwrap() {
+    match parse(words, None).unwrap() {
         Request::Render(job, _) | Request::View(job, _) => job,
         other => panic!("{other:?}"),
     }
@@ -46,6 +47,7 @@ fn unusual() -> Job {
                 quality: BvhQuality::Fast,
             },
             threads: 3,
+            isa: Some(Isa::Portable),
             stop: StopRule {
                 samples_per_pixel: Some(1000),
                 seconds: Some(0.1 + 0.2),

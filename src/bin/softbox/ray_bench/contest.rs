@@ -3,6 +3,7 @@ use std::thread;
 
 use softbox::bvh::BvhSettings;
 use softbox::geometry::{Aggregate, Hit, Shapes};
+use softbox::math::Isa;
 
 use super::clock::{Taken, of_process, of_thread};
 use super::rays::{RaySet, ray_sets};
@@ -29,6 +30,7 @@ pub(crate) fn contest(subject: &Subject, systems: &[System], protocol: &Protocol
     let mut result = SceneResult {
         scene: subject.name.clone(),
         triangles: subject.shapes.triangles.len(),
+        isa: protocol.isa.unwrap_or_else(Isa::best),
         rays: sets.iter().map(|set| (set.kind, set.rays.len())).collect(),
         builds: Vec::new(),
         traced: Vec::new(),

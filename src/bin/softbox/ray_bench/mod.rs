@@ -22,6 +22,7 @@ pub(crate) mod system;
 mod table;
 
 use clap::Args;
+use softbox::math::Isa;
 
 pub(crate) use catalog::{SCENES, subject};
 pub(crate) use contest::contest;
@@ -48,6 +49,9 @@ pub(crate) struct Protocol {
     /// Numbers of threads
     #[arg(long, value_name = "N,N", default_value = "1,2", value_delimiter = ',', value_parser = count)]
     pub(crate) threads: Vec<usize>,
+    /// Instruction set that ours traces with: portable or avx2 [default: the best of this processor]
+    #[arg(long, value_parser = Isa::usable)]
+    pub(crate) isa: Option<Isa>,
     /// Kinds of rays
     #[arg(
         long,

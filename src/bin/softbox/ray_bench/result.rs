@@ -1,5 +1,6 @@
 use serde::Serialize;
 use softbox::geometry::Hit;
+use softbox::math::Isa;
 
 use super::Kind;
 
@@ -11,6 +12,8 @@ const TOLERANCE: f32 = 1e-4;
 pub(crate) struct SceneResult {
     pub(crate) scene: String,
     pub(crate) triangles: usize,
+    /// The instruction set of our tracer.
+    pub(crate) isa: Isa,
     /// Rays of each kind.
     pub(crate) rays: Vec<(Kind, usize)>,
     pub(crate) builds: Vec<BuildResult>,

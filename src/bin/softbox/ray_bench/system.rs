@@ -4,7 +4,7 @@ use clap::ValueEnum;
 use rayon::ThreadPoolBuilder;
 use softbox::bvh::BvhSettings;
 use softbox::geometry::{Aggregate, Hit, Shapes, TraceCounts};
-use softbox::math::Ray;
+use softbox::math::{Isa, Ray};
 
 use super::Kind;
 
@@ -63,12 +63,13 @@ impl System {
     }
 }
 
-/// The tracer of the library, as a render uses it.
-pub(crate) fn ours() -> System {
-    System::new("ours", Kind::value_variants(), |shapes, threads| {
+/// The tracer of the library, as a render with `isa` uses it.
+pub(crate) fn ours(isa: Isa) -> System {
+    System::new("ours", Kind::value_variants(), move |shapes, threads| {
         let shapes = shapes.clone();
-        Box::new(on_threads(threads, || -> Box<dyn Tracer> {
-            Box::new(Ours(Aggregate::build(shapes, BvhSettings::default())))
+        Box::new(on_threads(threads, move || -> Box<dyn Tracer> {
+            let built = Aggregate::build(shapes, BvhSettings::default());
+            Box::new(Ours(built.with_isa(isa)))
         }))
     })
 }

@@ -7,8 +7,8 @@ use super::{Kind, SceneResult};
 pub(crate) fn write_table(out: &mut impl Write, result: &SceneResult) -> Result<()> {
     write!(
         out,
-        "{}: {} triangles; rays:",
-        result.scene, result.triangles
+        "{}: {} triangles; {}; rays:",
+        result.scene, result.triangles, result.isa
     )?;
     for (kind, rays) in &result.rays {
         write!(out, " {kind} {rays}")?;

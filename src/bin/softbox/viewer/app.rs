@@ -84,9 +84,10 @@ impl App {
         ctx.all_styles_mut(|style| style.spacing.scroll = ScrollStyle::solid());
         let mut preferences = Preferences::load(cc.storage);
         preferences.keys = options.keys.unwrap_or(preferences.keys);
-        let settings = options
+        let mut settings = options
             .settings
             .unwrap_or_else(|| preferences.settings.clone());
+        settings.isa = options.isa;
         let display = options.display.unwrap_or(preferences.display);
         let mut document = Document::new(scene, settings, display, options.camera);
         document.resolution = if options.has_fixed_size {
@@ -141,6 +142,7 @@ impl App {
         panels::statistics::show(
             ui,
             &self.engine.status(),
+            self.document.settings.instruction_set(),
             latency.as_ref(),
             self.view.bvh.stats(),
         );

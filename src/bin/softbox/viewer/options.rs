@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use softbox::display::DisplaySettings;
+use softbox::math::Isa;
 use softbox::settings::RenderSettings;
 
 use super::command::KeyPreset;
@@ -27,6 +28,8 @@ pub(super) struct ViewerOptions {
     pub(super) scene: Option<PathBuf>,
     /// Settings of the render.
     pub(super) settings: Option<RenderSettings>,
+    /// Forced instruction set, whatever the settings.
+    pub(super) isa: Option<Isa>,
     /// True when the size is given and shall not follow the window.
     pub(super) has_fixed_size: bool,
     /// Settings of the display.
@@ -50,11 +53,15 @@ pub(super) struct ViewerOptions {
 impl ViewerOptions {
     /// The options of a command line. Settings that are the defaults count as not given.
     pub(super) fn new(job: &Job, window: &WindowArgs) -> Self {
-        let plain = RenderSettings::default();
         let settings = &job.settings;
+        let plain = RenderSettings {
+            isa: settings.isa,
+            ..RenderSettings::default()
+        };
         Self {
             scene: job.scene.clone(),
             settings: (*settings != plain).then(|| settings.clone()),
+            isa: settings.isa,
             has_fixed_size: (settings.width, settings.height) != (plain.width, plain.height),
             display: (job.display != DisplaySettings::default()).then_some(job.display),
             camera: job.camera.clone(),

@@ -2,6 +2,7 @@
 
 use eframe::egui::{self, Grid, Ui};
 use softbox::bvh::BvhStats;
+use softbox::math::Isa;
 use softbox::session::{SessionStatus, TreeState};
 
 use crate::viewer::latency::LatencySummary;
@@ -10,11 +11,13 @@ use crate::viewer::latency::LatencySummary;
 pub(in crate::viewer) fn show(
     ui: &mut Ui,
     status: &SessionStatus,
+    isa: Isa,
     latency: Option<&LatencySummary>,
     bvh: Option<&BvhStats>,
 ) {
     egui::CollapsingHeader::new("Statistics").show(ui, |ui| {
         let mut lines = render_facts(status);
+        lines.push(("Instruction set", isa.to_string()));
         if let TreeState::Refined { seconds } = status.tree {
             lines.push(("Tree refined in", format!("{seconds:.3} s")));
         }

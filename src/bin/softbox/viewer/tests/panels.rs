@@ -1,6 +1,7 @@
 use eframe::egui::accesskit::Role;
 use egui_kittest::kittest::Queryable;
 use softbox::bvh::BvhQuality;
+use softbox::math::Isa;
 use softbox::session::TreeState;
 use softbox::settings::{MaxDepth, Mode, View};
 
@@ -108,6 +109,20 @@ fn a_view_is_chosen_from_the_menu_and_shown() {
     let normals = harness.state().view.viewport.frame().expect("a picture");
     assert_eq!(normals.snapshot.view, View::Normals);
     assert_ne!(*normals.image, *path_traced.image);
+}
+
+#[test]
+fn the_statistics_tell_the_instruction_set() {
+    let mut options = small_options();
+    options.isa = Some(Isa::Portable);
+    let mut harness = viewer_of(small_scene(), options);
+    wait_for_picture(&mut harness);
+    harness.get_by_label("Statistics").click();
+    harness.run_steps(2);
+    harness.get_by_label("Instruction set");
+    harness.get_by_label("portable");
+    let scene = harness.state().engine.prepared().expect("it is shown");
+    assert_eq!(scene.aggregate().isa(), Isa::Portable);
 }
 
 #[test]
