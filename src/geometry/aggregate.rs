@@ -3,10 +3,10 @@ use std::sync::Arc;
 
 use super::block::{Block, ID_LIMIT};
 use super::leaf::{LeafOrder, boxes};
-use super::refine::refine;
-use super::{Hit, Shapes};
-use crate::bvh::{BLOCK, Bvh, BvhSettings, BvhStats, NodeId};
-use crate::math::{Isa, Ray};
+use super::refine::{refine, refine_meshes};
+use super::{Hit, Instance, Instances, Placement, Shapes};
+use crate::bvh::{BLOCK, Bvh, BvhSettings, BvhStats, NodeId, Work};
+use crate::math::{Aabb, Isa, Ray};
 
 /// Work done by traversal.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -19,7 +19,10 @@ pub struct TraceCounts {
     pub primitive_tests: u64,
 }
 
-/// Shapes under a bounding volume hierarchy: the batch tracing interface.
+/// Shapes under a bounding volume hierarchy, and meshes that stand beside them without being
+/// copied: the batch tracing interface.
+///
+/// Primitive ids count the shapes first, then the triangles of each instance.
 ///
 /// The answer to a ray does not depend on the tree: every kind of [`BvhSettings`] gives the same
 /// bits. Triangles are watertight and have two sides; those without area or with a vertex that is
@@ -30,6 +33,8 @@ pub struct Aggregate {
     shapes: Arc<Shapes>,
     bvh: Bvh,
     leaves: LeafOrder,
+    /// What rays can meet besides; `None` for most.
+    instances: Option<Arc<Instances>>,
     isa: Isa,
 }
 
@@ -54,19 +59,44 @@ impl Aggregate {
             shapes: Arc::new(shapes),
             bvh,
             leaves,
+            instances: None,
             isa: Isa::best(),
         })
+    }
+
+    /// Places meshes beside the shapes, in the place of those that were; ids go on after the
+    /// shapes.
+    ///
+    /// # Panics
+    /// If a mesh has spheres or instances itself, or the ids do not fit in 32 bits.
+    #[must_use]
+    pub fn with_instances(self, placed: Vec<(Arc<Self>, Placement)>) -> Self {
+        let instances = (!placed.is_empty()).then(|| Arc::new(Instances::new(&self, placed)));
+        Self { instances, ..self }
     }
 
     /// Another hierarchy over the same (shared) shapes that costs rays less and takes longer to
     /// make; `progress` as in [`Self::build_with`].
     pub fn refined(&self, progress: &(dyn Fn(f32) -> ControlFlow<()> + Sync)) -> Option<Self> {
+        let Some(instances) = &self.instances else {
+            return self.refined_alone(progress);
+        };
+        let (own, placed) = refine_meshes(self, instances, progress)?;
+        Some(own.with_instances(placed))
+    }
+
+    /// [`Self::refined`] without the instances.
+    pub(super) fn refined_alone(
+        &self,
+        progress: &(dyn Fn(f32) -> ControlFlow<()> + Sync),
+    ) -> Option<Self> {
         let (bvh, ids) = refine(&self.shapes, progress)?;
         let leaves = LeafOrder::new(&self.shapes, &bvh, &ids);
         Some(Self {
             shapes: Arc::clone(&self.shapes),
             bvh,
             leaves,
+            instances: None,
             isa: self.isa,
         })
     }
@@ -80,23 +110,49 @@ impl Aggregate {
         Self { isa, ..self }
     }
 
+    /// The instances; `None` if there are none.
+    pub fn instances(&self) -> Option<&Instances> {
+        self.instances.as_deref()
+    }
+
+    /// The instance that holds `primitive`, and the triangle of its mesh; `None` if `primitive` is
+    /// one of the shapes.
+    #[inline]
+    pub fn find_instance(&self, primitive: u32) -> Option<(&Instance, usize)> {
+        let instances = self.instances.as_deref()?;
+        let (number, triangle) = instances.find(primitive)?;
+        Some((&instances.list()[number], triangle))
+    }
+
+    /// Number of primitive ids: the shapes, and the triangles of each instance.
+    pub fn primitive_count(&self) -> usize {
+        self.shapes.len() + self.instances().map_or(0, Instances::primitive_count)
+    }
+
+    /// The box around the shapes, without the instances.
+    pub(super) fn own_bounds(&self) -> Aabb {
+        let root = self.bvh.root();
+        root.map_or(Aabb::EMPTY, |root| self.bvh.bounds(root))
+    }
+
     /// Ids of all primitives below a node of [`Self::bvh`].
     pub fn primitives(&self, node: NodeId) -> impl Iterator<Item = u32> + '_ {
         let blocks = &self.leaves.blocks()[self.bvh.blocks(node)];
         blocks.iter().flat_map(Block::ids)
     }
 
-    /// The shapes.
+    /// The shapes, without those of instances.
     pub fn shapes(&self) -> &Shapes {
         &self.shapes
     }
 
-    /// The hierarchy; its primitive ids are those of the shapes.
+    /// The hierarchy over the shapes; its primitive ids are theirs.
     pub fn bvh(&self) -> &Bvh {
         &self.bvh
     }
 
-    /// Shape, cost and memory of the hierarchy, the vertices gathered for its leaves included.
+    /// Shape, cost and memory of the hierarchy over the shapes, the vertices gathered for its leaves
+    /// included.
     pub fn stats(&self) -> BvhStats {
         let mut stats = self.bvh.stats();
         stats.bytes += self.leaves.bytes();
@@ -110,6 +166,9 @@ impl Aggregate {
     pub fn closest_hit(&self, rays: &[Ray], hits: &mut [Hit], counts: &mut TraceCounts) {
         assert_eq!(rays.len(), hits.len());
         self.trace::<false>(rays, counts, |i, hit| hits[i] = hit);
+        if let Some(instances) = &self.instances {
+            instances.closest_hit(self.isa, rays, hits, counts);
+        }
     }
 
     /// Writes for each ray whether anything lies on it.
@@ -119,6 +178,9 @@ impl Aggregate {
     pub fn any_hit(&self, rays: &[Ray], occluded: &mut [bool], counts: &mut TraceCounts) {
         assert_eq!(rays.len(), occluded.len());
         self.trace::<true>(rays, counts, |i, hit| occluded[i] = !hit.is_miss());
+        if let Some(instances) = &self.instances {
+            instances.any_hit(self.isa, rays, occluded, counts);
+        }
     }
 
     /// The closest hit of one ray.
@@ -126,6 +188,18 @@ impl Aggregate {
         let mut hits = [Hit::MISS];
         self.closest_hit(&[*ray], &mut hits, &mut TraceCounts::default());
         hits[0]
+    }
+
+    /// One ray through the shapes, without the instances.
+    pub(super) fn trace_one<const ANY: bool>(&self, isa: Isa, ray: &Ray) -> (Hit, Work) {
+        let mut hit = Hit::MISS;
+        let rays = std::slice::from_ref(ray);
+        let work = self
+            .bvh
+            .traverse::<ANY, _>(isa, &self.leaves, rays, |_, query| {
+                hit = query.map_or(Hit::MISS, |query| query.hit);
+            });
+        (hit, work)
     }
 
     fn trace<const ANY: bool>(

@@ -203,7 +203,7 @@ impl Leaves for LeafOrder {
 }
 
 /// Sets `more` for all blocks of each leaf below `node` but the last.
-fn mark_more(bvh: &Bvh, node: NodeId, more: &mut [bool]) {
+pub(super) fn mark_more(bvh: &Bvh, node: NodeId, more: &mut [bool]) {
     let mut open = vec![node];
     while let Some(node) = open.pop() {
         match bvh.children(node) {

@@ -1,7 +1,8 @@
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
-use super::Shapes;
 use super::leaf::boxes;
+use super::{Aggregate, Instances, Placement, Shapes};
 use crate::bvh::{Bvh, BvhKind, BvhQuality, BvhSettings, LeafBlocks};
 
 /// Largest leaf that the heuristic may choose: so large that it decides alone. On a knot of 70 000
@@ -21,6 +22,36 @@ pub(super) fn refine(
         quality: BvhQuality::High,
     };
     Bvh::build_with(&boxes(shapes), &settings, progress)
+}
+
+/// An aggregate without its instances and the meshes of its instances with their places, all under
+/// the best hierarchies; progress as in [`refine`].
+pub(super) fn refine_meshes(
+    aggregate: &Aggregate,
+    instances: &Instances,
+    progress: &(dyn Fn(f32) -> ControlFlow<()> + Sync),
+) -> Option<(Aggregate, Vec<(Arc<Aggregate>, Placement)>)> {
+    let meshes = instances.meshes();
+    let sizes = meshes.iter().map(|mesh| mesh.shapes().len());
+    let total = (sizes.sum::<usize>() + aggregate.shapes().len()).max(1) as f32;
+    let mut done = 0;
+    let mut one = |part: &Aggregate| {
+        let size = part.shapes().len();
+        let refined = part
+            .refined_alone(&|fraction| progress((done as f32 + fraction * size as f32) / total));
+        done += size;
+        refined
+    };
+    let own = one(aggregate)?;
+    let mut refined = std::collections::HashMap::new();
+    for mesh in meshes {
+        refined.insert(Arc::as_ptr(mesh), Arc::new(one(mesh)?));
+    }
+    let placed = instances.list().iter().map(|instance| {
+        let mesh = &refined[&Arc::as_ptr(instance.mesh())];
+        (Arc::clone(mesh), *instance.placement())
+    });
+    Some((own, placed.collect()))
 }
 
 #[cfg(test)]
