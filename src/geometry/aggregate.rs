@@ -4,7 +4,7 @@ use std::sync::Arc;
 use super::block::{Block, ID_LIMIT};
 use super::leaf::{LeafOrder, boxes};
 use super::refine::{refine, refine_meshes};
-use super::{Hit, Instance, Instances, Placement, Shapes};
+use super::{Hit, Instance, InstanceStats, Instances, Placement, Shapes};
 use crate::bvh::{BLOCK, Bvh, BvhSettings, BvhStats, NodeId, Work};
 use crate::math::{Aabb, Isa, Ray};
 
@@ -28,11 +28,13 @@ pub struct TraceCounts {
 /// bits. Triangles are watertight and have two sides; those without area or with a vertex that is
 /// not finite are never hit. A ray with a number that is not finite (other than `t_max`) hits
 /// nothing, and nothing is hit at or beyond [`crate::bvh::T_FAR`].
+///
+/// A clone shares everything.
 #[derive(Clone, Debug)]
 pub struct Aggregate {
     shapes: Arc<Shapes>,
-    bvh: Bvh,
-    leaves: LeafOrder,
+    bvh: Arc<Bvh>,
+    leaves: Arc<LeafOrder>,
     /// What rays can meet besides; `None` for most.
     instances: Option<Arc<Instances>>,
     isa: Isa,
@@ -57,8 +59,8 @@ impl Aggregate {
         let leaves = LeafOrder::new(&shapes, &bvh, &ids);
         Some(Self {
             shapes: Arc::new(shapes),
-            bvh,
-            leaves,
+            bvh: Arc::new(bvh),
+            leaves: Arc::new(leaves),
             instances: None,
             isa: Isa::best(),
         })
@@ -73,6 +75,15 @@ impl Aggregate {
     pub fn with_instances(self, placed: Vec<(Arc<Self>, Placement)>) -> Self {
         let instances = (!placed.is_empty()).then(|| Arc::new(Instances::new(&self, placed)));
         Self { instances, ..self }
+    }
+
+    /// The shapes alone; nothing is copied.
+    #[must_use]
+    pub fn without_instances(&self) -> Self {
+        Self {
+            instances: None,
+            ..self.clone()
+        }
     }
 
     /// Another hierarchy over the same (shared) shapes that costs rays less and takes longer to
@@ -94,8 +105,8 @@ impl Aggregate {
         let leaves = LeafOrder::new(&self.shapes, &bvh, &ids);
         Some(Self {
             shapes: Arc::clone(&self.shapes),
-            bvh,
-            leaves,
+            bvh: Arc::new(bvh),
+            leaves: Arc::new(leaves),
             instances: None,
             isa: self.isa,
         })
@@ -122,6 +133,12 @@ impl Aggregate {
         let instances = self.instances.as_deref()?;
         let (number, triangle) = instances.find(primitive)?;
         Some((&instances.list()[number], triangle))
+    }
+
+    /// What the instances share and what that saves; all zero without instances.
+    pub fn instance_stats(&self) -> InstanceStats {
+        let stats = self.instances().map(Instances::stats);
+        stats.unwrap_or_default()
     }
 
     /// Number of primitive ids: the shapes, and the triangles of each instance.
@@ -196,7 +213,7 @@ impl Aggregate {
         let rays = std::slice::from_ref(ray);
         let work = self
             .bvh
-            .traverse::<ANY, _>(isa, &self.leaves, rays, |_, query| {
+            .traverse::<ANY, _>(isa, &*self.leaves, rays, |_, query| {
                 hit = query.map_or(Hit::MISS, |query| query.hit);
             });
         (hit, work)
@@ -208,7 +225,7 @@ impl Aggregate {
         counts: &mut TraceCounts,
         mut answer: impl FnMut(usize, Hit),
     ) {
-        let (isa, leaves) = (self.isa, &self.leaves);
+        let (isa, leaves) = (self.isa, &*self.leaves);
         let work = self.bvh.traverse::<ANY, _>(isa, leaves, rays, |i, query| {
             answer(i, query.map_or(Hit::MISS, |query| query.hit));
         });

@@ -1,4 +1,7 @@
+use std::collections::HashSet;
 use std::sync::Arc;
+
+use serde::Serialize;
 
 use super::{Aggregate, Instance, Placement};
 use crate::bvh::{BLOCK, Bvh, BvhSettings, NO_PRIMITIVE, NodeId, padded};
@@ -26,6 +29,21 @@ pub(super) struct InstanceBlock {
     ids: [u32; BLOCK],
     /// The leaf goes on in the next block.
     pub(super) has_more: bool,
+}
+
+/// What the instances of an aggregate share.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct InstanceStats {
+    /// Instances.
+    pub instances: usize,
+    /// Meshes that they place.
+    pub meshes: usize,
+    /// Triangles in memory.
+    pub unique_triangles: usize,
+    /// Triangles that rays meet.
+    pub virtual_triangles: usize,
+    /// Memory of instances, meshes and hierarchies, in bytes.
+    pub bytes: usize,
 }
 
 impl InstanceBlock {
@@ -120,19 +138,33 @@ impl Instances {
 
     /// The meshes, each once, in the order of their first instances.
     pub fn meshes(&self) -> Vec<&Arc<Aggregate>> {
-        let mut seen = std::collections::HashSet::new();
+        let mut seen = HashSet::new();
         let meshes = self.list.iter().map(Instance::mesh);
         meshes
             .filter(|mesh| seen.insert(Arc::as_ptr(mesh)))
             .collect()
     }
 
-    /// Memory of the instances and of their hierarchy, without the meshes, in bytes.
-    pub(super) fn own_bytes(&self) -> usize {
-        size_of_val(self.list.as_slice())
+    /// What they share, and what that takes.
+    pub(super) fn stats(&self) -> InstanceStats {
+        let meshes = self.meshes();
+        let own = size_of_val(self.list.as_slice())
             + size_of_val(self.boxes.as_slice())
             + size_of_val(self.blocks.as_slice())
-            + self.bvh.bytes()
+            + self.bvh.bytes();
+        let mesh_bytes = meshes.iter().map(|mesh| {
+            let shapes = mesh.shapes();
+            mesh.stats().bytes
+                + size_of_val(shapes.positions.as_slice())
+                + size_of_val(shapes.triangles.as_slice())
+        });
+        InstanceStats {
+            instances: self.list.len(),
+            meshes: meshes.len(),
+            unique_triangles: meshes.iter().map(|mesh| mesh.shapes().len()).sum(),
+            virtual_triangles: self.primitive_count(),
+            bytes: own + mesh_bytes.sum::<usize>(),
+        }
     }
 
     pub(super) fn boxes(&self) -> &[Aabb] {

@@ -22,7 +22,7 @@ pub use aggregate::{Aggregate, TraceCounts};
 pub use departure::triangle_departure;
 pub use hit::Hit;
 pub use instance::Instance;
-pub use instances::Instances;
+pub use instances::{InstanceStats, Instances};
 pub use mesh::{Corner, Mesh, MeshTriangle};
 pub use placement::Placement;
 pub use shapes::Shapes;

@@ -1,3 +1,4 @@
+use std::collections::HashMap;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -43,7 +44,7 @@ pub(super) fn refine_meshes(
         refined
     };
     let own = one(aggregate)?;
-    let mut refined = std::collections::HashMap::new();
+    let mut refined = HashMap::new();
     for mesh in meshes {
         refined.insert(Arc::as_ptr(mesh), Arc::new(one(mesh)?));
     }

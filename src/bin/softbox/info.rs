@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 use anyhow::{Context, anyhow};
 use serde::Serialize;
 use softbox::bvh::BvhStats;
+use softbox::geometry::InstanceStats;
 use softbox::io::{ImportReport, Loaded};
 use softbox::scene::{PrepareSettings, prepare};
 
@@ -23,6 +24,7 @@ struct Description {
     report: ImportReport,
     decisions: Vec<String>,
     bvh: BvhStats,
+    instancing: InstanceStats,
 }
 
 /// Prints what a scene file holds, what was guessed and dropped, and what its hierarchy is like.
@@ -38,12 +40,13 @@ pub(crate) fn run(args: &InfoArgs) -> Result<(), Failure> {
         scene: scene.name.clone(),
         bounds_min: bounds.map(|(min, _)| min.to_array()),
         bounds_max: bounds.map(|(_, max)| max.to_array()),
-        primitives: prepared.shapes().len(),
+        primitives: prepared.aggregate().primitive_count(),
         lights: prepared.light_count(),
         added_light,
         report,
         decisions: prepared.notes().to_vec(),
         bvh: prepared.aggregate().stats(),
+        instancing: prepared.instance_stats(),
     };
     print(&description, args.json)
         .context("Cannot write to standard output")
@@ -75,6 +78,18 @@ fn print(description: &Description, as_json: bool) -> std::io::Result<()> {
         "at run time: {} primitives, {} lights",
         description.primitives, description.lights
     )?;
+    let shared = &description.instancing;
+    if shared.instances > 0 {
+        writeln!(
+            out,
+            "instances: {} of {} shared meshes, {} triangles that rays meet as {}, {} bytes",
+            shared.instances,
+            shared.meshes,
+            shared.unique_triangles,
+            shared.virtual_triangles,
+            shared.bytes
+        )?;
+    }
     let bvh = &description.bvh;
     writeln!(
         out,
