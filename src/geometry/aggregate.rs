@@ -89,11 +89,10 @@ impl Aggregate {
     /// Another hierarchy over the same (shared) shapes that costs rays less and takes longer to
     /// make; `progress` as in [`Self::build_with`].
     pub fn refined(&self, progress: &(dyn Fn(f32) -> ControlFlow<()> + Sync)) -> Option<Self> {
-        let Some(instances) = &self.instances else {
-            return self.refined_alone(progress);
-        };
-        let (own, placed) = refine_meshes(self, instances, progress)?;
-        Some(own.with_instances(placed))
+        match &self.instances {
+            None => self.refined_alone(progress),
+            Some(instances) => refine_meshes(self, instances, progress),
+        }
     }
 
     /// [`Self::refined`] without the instances.

@@ -3,7 +3,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use super::leaf::boxes;
-use super::{Aggregate, Instances, Placement, Shapes};
+use super::{Aggregate, Instances, Shapes};
 use crate::bvh::{Bvh, BvhKind, BvhQuality, BvhSettings, LeafBlocks};
 
 /// Largest leaf that the heuristic may choose: so large that it decides alone. On a knot of 70 000
@@ -25,13 +25,13 @@ pub(super) fn refine(
     Bvh::build_with(&boxes(shapes), &settings, progress)
 }
 
-/// An aggregate without its instances and the meshes of its instances with their places, all under
-/// the best hierarchies; progress as in [`refine`].
+/// `aggregate`, whose instances these are, with its own shapes and every mesh under the best
+/// hierarchies; progress as in [`refine`].
 pub(super) fn refine_meshes(
     aggregate: &Aggregate,
     instances: &Instances,
     progress: &(dyn Fn(f32) -> ControlFlow<()> + Sync),
-) -> Option<(Aggregate, Vec<(Arc<Aggregate>, Placement)>)> {
+) -> Option<Aggregate> {
     let meshes = instances.meshes();
     let sizes = meshes.iter().map(|mesh| mesh.shapes().len());
     let total = (sizes.sum::<usize>() + aggregate.shapes().len()).max(1) as f32;
@@ -52,7 +52,8 @@ pub(super) fn refine_meshes(
         let mesh = &refined[&Arc::as_ptr(instance.mesh())];
         (Arc::clone(mesh), *instance.placement())
     });
-    Some((own, placed.collect()))
+    let placed = placed.collect();
+    Some(own.with_instances(placed))
 }
 
 #[cfg(test)]
