@@ -43,6 +43,10 @@
 //!   but for the few that rounding sends elsewhere, both give the same radiance.
 //! - Tracing is a batch: [`geometry::Aggregate::closest_hit`], [`geometry::Aggregate::any_hit`].
 //!   It is watertight, and gives what testing every primitive gives, bit for bit.
+//! - A mesh with many copies is prepared once ([`geometry::Instances`], [`scene::Instancing`]): a ray
+//!   that meets the box of an instance goes on in the space of the mesh. Copies and instances give
+//!   the same picture up to rounding. An edit that moves an object keeps its hierarchy
+//!   ([`scene::PrepareCache`]).
 //! - [`scene::PreparedScene`] is immutable and shared by `Arc`. A better hierarchy, made in the
 //!   background, makes another one over the same tables; renders change over between two batches.
 //! - No module below the program knows windows, threads (but for `session`), the clock (but for

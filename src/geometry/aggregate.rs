@@ -3,10 +3,10 @@ use std::sync::Arc;
 
 use super::block::{Block, ID_LIMIT};
 use super::leaf::{LeafOrder, bounds};
-use super::refine::refine;
-use super::{Hit, Shapes};
-use crate::bvh::{BLOCK, Bvh, BvhKind, BvhQuality, BvhSettings, BvhStats, NodeId, Progress};
-use crate::math::{Isa, Ray};
+use super::refine::{refine, refine_meshes};
+use super::{Hit, Instance, InstanceStats, Instances, Placement, Shapes};
+use crate::bvh::{BLOCK, Bvh, BvhKind, BvhQuality, BvhSettings, BvhStats, NodeId, Progress, Work};
+use crate::math::{Aabb, Isa, Ray};
 
 /// Up to this many shapes a tree of high quality is built at once: it takes some 25 ms.
 const SMALL: usize = 16_384;
@@ -22,17 +22,24 @@ pub struct TraceCounts {
     pub primitive_tests: u64,
 }
 
-/// Shapes under a bounding volume hierarchy: the batch tracing interface.
+/// Shapes under a bounding volume hierarchy, and meshes that stand beside them without being
+/// copied: the batch tracing interface.
+///
+/// Primitive ids count the shapes first, then the triangles of each instance.
 ///
 /// The answer to a ray does not depend on the tree: every kind of [`BvhSettings`] gives the same
 /// bits. Triangles are watertight and have two sides; those without area or with a vertex that is
 /// not finite are never hit. A ray with a number that is not finite (other than `t_max`) hits
 /// nothing, and nothing is hit at or beyond [`crate::bvh::T_FAR`].
+///
+/// A clone shares everything.
 #[derive(Clone, Debug)]
 pub struct Aggregate {
     pub(super) shapes: Arc<Shapes>,
-    pub(super) bvh: Bvh,
-    pub(super) leaves: LeafOrder,
+    pub(super) bvh: Arc<Bvh>,
+    pub(super) leaves: Arc<LeafOrder>,
+    /// What rays can meet besides; `None` for most.
+    instances: Option<Arc<Instances>>,
     leaf_size: u32,
     is_refined: bool,
     isa: Isa,
@@ -68,8 +75,9 @@ impl Aggregate {
         let leaves = LeafOrder::new(&shapes, &bvh, &ids);
         Some(Self {
             shapes: Arc::new(shapes),
-            bvh,
-            leaves,
+            bvh: Arc::new(bvh),
+            leaves: Arc::new(leaves),
+            instances: None,
             leaf_size: settings.leaf_size,
             is_refined: is_refined || settings.kind != BvhKind::Sah,
             isa: Isa::best(),
@@ -78,18 +86,48 @@ impl Aggregate {
 
     /// True when [`Self::refined`] would gain nothing.
     pub fn is_refined(&self) -> bool {
-        self.is_refined
+        let meshes = self.instances().map(Instances::meshes);
+        self.is_refined && meshes.is_none_or(|all| all.iter().all(|mesh| mesh.is_refined()))
+    }
+
+    /// Places meshes beside the shapes, in the place of those that were; ids go on after the
+    /// shapes.
+    ///
+    /// # Panics
+    /// If a mesh has spheres or instances itself, or the ids do not fit in 32 bits.
+    #[must_use]
+    pub fn with_instances(self, placed: Vec<(Arc<Self>, Placement)>) -> Self {
+        let instances = (!placed.is_empty()).then(|| Arc::new(Instances::new(&self, placed)));
+        Self { instances, ..self }
+    }
+
+    /// The shapes alone; nothing is copied.
+    #[must_use]
+    pub fn without_instances(&self) -> Self {
+        Self {
+            instances: None,
+            ..self.clone()
+        }
     }
 
     /// Another hierarchy over the same (shared) shapes that costs rays less and takes longer to
     /// make; `progress` as in [`Self::build_with`].
     pub fn refined(&self, progress: &Progress<'_>) -> Option<Self> {
+        match &self.instances {
+            None => self.refined_alone(progress),
+            Some(instances) => refine_meshes(self, instances, progress),
+        }
+    }
+
+    /// [`Self::refined`] without the instances.
+    pub(super) fn refined_alone(&self, progress: &Progress<'_>) -> Option<Self> {
         let (bvh, ids) = refine(&self.shapes, self.leaf_size, progress)?;
         let leaves = LeafOrder::new(&self.shapes, &bvh, &ids);
         Some(Self {
             shapes: Arc::clone(&self.shapes),
-            bvh,
-            leaves,
+            bvh: Arc::new(bvh),
+            leaves: Arc::new(leaves),
+            instances: None,
             leaf_size: self.leaf_size,
             is_refined: true,
             isa: self.isa,
@@ -110,6 +148,37 @@ impl Aggregate {
         self.isa
     }
 
+    /// The instances; `None` if there are none.
+    pub fn instances(&self) -> Option<&Instances> {
+        self.instances.as_deref()
+    }
+
+    /// The instance that holds `primitive`, and the triangle of its mesh; `None` if `primitive` is
+    /// one of the shapes.
+    #[inline]
+    pub fn find_instance(&self, primitive: u32) -> Option<(&Instance, usize)> {
+        let instances = self.instances.as_deref()?;
+        let (number, triangle) = instances.find(primitive)?;
+        Some((&instances.list()[number], triangle))
+    }
+
+    /// What the instances share and what that saves; all zero without instances.
+    pub fn instance_stats(&self) -> InstanceStats {
+        let stats = self.instances().map(Instances::stats);
+        stats.unwrap_or_default()
+    }
+
+    /// Number of primitive ids: the shapes, and the triangles of each instance.
+    pub fn primitive_count(&self) -> usize {
+        self.shapes.len() + self.instances().map_or(0, Instances::primitive_count)
+    }
+
+    /// The box around the shapes, without the instances.
+    pub(super) fn own_bounds(&self) -> Aabb {
+        let root = self.bvh.root();
+        root.map_or(Aabb::EMPTY, |root| self.bvh.bounds(root))
+    }
+
     /// Ids of all primitives below a node of [`Self::bvh`].
     pub fn primitives(&self, node: NodeId) -> impl Iterator<Item = u32> + '_ {
         let blocks = &self.leaves.blocks()[self.bvh.blocks(node)];
@@ -122,17 +191,18 @@ impl Aggregate {
         ids.into_iter().any(|own| own == id)
     }
 
-    /// The shapes.
+    /// The shapes, without those of instances.
     pub fn shapes(&self) -> &Shapes {
         &self.shapes
     }
 
-    /// The hierarchy; its primitive ids are those of the shapes.
+    /// The hierarchy over the shapes; its primitive ids are theirs.
     pub fn bvh(&self) -> &Bvh {
         &self.bvh
     }
 
-    /// Shape, cost and memory of the hierarchy, the vertices gathered for its leaves included.
+    /// Shape, cost and memory of the hierarchy over the shapes, the vertices gathered for its leaves
+    /// included.
     pub fn stats(&self) -> BvhStats {
         let mut stats = self.bvh.stats();
         stats.bytes += self.leaves.bytes();
@@ -147,6 +217,9 @@ impl Aggregate {
     pub fn closest_hit(&self, rays: &[Ray], hits: &mut [Hit], counts: &mut TraceCounts) {
         assert_eq!(rays.len(), hits.len());
         self.trace::<false>(rays, counts, |i, hit| hits[i] = hit);
+        if let Some(instances) = &self.instances {
+            instances.closest_hit(self.isa, rays, hits, counts);
+        }
     }
 
     /// Writes for each ray whether anything lies on it.
@@ -156,6 +229,9 @@ impl Aggregate {
     pub fn any_hit(&self, rays: &[Ray], occluded: &mut [bool], counts: &mut TraceCounts) {
         assert_eq!(rays.len(), occluded.len());
         self.trace::<true>(rays, counts, |i, hit| occluded[i] = !hit.is_miss());
+        if let Some(instances) = &self.instances {
+            instances.any_hit(self.isa, rays, occluded, counts);
+        }
     }
 
     /// The closest hit of one ray.
@@ -165,13 +241,25 @@ impl Aggregate {
         hits[0]
     }
 
+    /// One ray through the shapes, without the instances.
+    pub(super) fn trace_one<const ANY: bool>(&self, isa: Isa, ray: &Ray) -> (Hit, Work) {
+        let mut hit = Hit::MISS;
+        let rays = std::slice::from_ref(ray);
+        let work = self
+            .bvh
+            .traverse::<ANY, _>(isa, &*self.leaves, rays, |_, query| {
+                hit = query.map_or(Hit::MISS, |query| query.hit);
+            });
+        (hit, work)
+    }
+
     fn trace<const ANY: bool>(
         &self,
         rays: &[Ray],
         counts: &mut TraceCounts,
         mut answer: impl FnMut(usize, Hit),
     ) {
-        let (isa, leaves) = (self.isa, &self.leaves);
+        let (isa, leaves) = (self.isa, &*self.leaves);
         let work = self.bvh.traverse::<ANY, _>(isa, leaves, rays, |i, query| {
             answer(i, query.map_or(Hit::MISS, |query| query.hit));
         });

@@ -28,15 +28,21 @@ pub fn triangle_departure(
     at: (Vec3, Vec3),
 ) -> (Vec3, Vec3) {
     let (_, error) = at;
-    match inwards(vertices, [1.0 - b1 - b2, b1, b2], error.max_element()) {
+    match departure_weights(vertices, b1, b2, error.max_element()) {
         Some([b1, b2]) => triangle_point_and_error(vertices, b1, b2),
         None => at,
     }
 }
 
 /// `b1` and `b2` of a point close by that keeps clear of the edges, given the bound of the error of
-/// a coordinate; `None` if the point of `weights` does already.
-fn inwards(vertices: &[Vec3; 3], weights: [f32; 3], error: f32) -> Option<[f32; 2]> {
+/// a coordinate; `None` if the point of these weights does already.
+pub(super) fn departure_weights(
+    vertices: &[Vec3; 3],
+    b1: f32,
+    b2: f32,
+    error: f32,
+) -> Option<[f32; 2]> {
+    let weights = [1.0 - b1 - b2, b1, b2];
     let [a, b, c] = *vertices;
     let (ab, ac, bc) = (b - a, c - a, c - b);
     let longest = ab

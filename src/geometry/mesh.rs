@@ -35,3 +35,18 @@ pub struct Mesh {
     /// Triangles; every index is in range.
     pub triangles: Vec<MeshTriangle>,
 }
+
+impl Mesh {
+    /// The positions that triangles have, each once.
+    pub fn used_positions(&self) -> Vec<DVec3> {
+        let mut is_used = vec![false; self.positions.len()];
+        for corner in self.triangles.iter().flat_map(|t| t.corners) {
+            is_used[corner.position as usize] = true;
+        }
+        let positions = self.positions.iter().zip(is_used);
+        positions
+            .filter(|(_, used)| *used)
+            .map(|(p, _)| *p)
+            .collect()
+    }
+}

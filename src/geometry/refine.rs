@@ -1,5 +1,8 @@
-use super::Shapes;
+use std::collections::HashMap;
+use std::sync::Arc;
+
 use super::leaf::bounds;
+use super::{Aggregate, Instances, Shapes};
 use crate::bvh::{Bvh, BvhKind, BvhQuality, BvhSettings, LeafBlocks, Progress};
 
 /// The best hierarchy over `shapes` that this program can build; reports the finished fraction
@@ -15,6 +18,37 @@ pub(super) fn refine(
         quality: BvhQuality::High,
     };
     Bvh::build_with(shapes.len(), &|id| bounds(shapes, id), &settings, progress)
+}
+
+/// `aggregate`, whose instances these are, with its own shapes and every mesh under the best
+/// hierarchies; progress as in [`refine`].
+pub(super) fn refine_meshes(
+    aggregate: &Aggregate,
+    instances: &Instances,
+    progress: &Progress<'_>,
+) -> Option<Aggregate> {
+    let meshes = instances.meshes();
+    let sizes = meshes.iter().map(|mesh| mesh.shapes().len());
+    let total = (sizes.sum::<usize>() + aggregate.shapes().len()).max(1) as f32;
+    let mut done = 0;
+    let mut one = |part: &Aggregate| {
+        let size = part.shapes().len();
+        let refined = part
+            .refined_alone(&|fraction| progress((done as f32 + fraction * size as f32) / total));
+        done += size;
+        refined
+    };
+    let own = one(aggregate)?;
+    let mut refined = HashMap::new();
+    for mesh in meshes {
+        refined.insert(Arc::as_ptr(mesh), Arc::new(one(mesh)?));
+    }
+    let placed = instances.list().iter().map(|instance| {
+        let mesh = &refined[&Arc::as_ptr(instance.mesh())];
+        (Arc::clone(mesh), *instance.placement())
+    });
+    let placed = placed.collect();
+    Some(own.with_instances(placed))
 }
 
 #[cfg(test)]

@@ -27,8 +27,8 @@ impl Aggregate {
                 return None;
             }
         }
-        let shapes = &self.shapes;
-        Some(self.leaves.refit(&mut self.bvh, shapes))
+        let leaves = Arc::make_mut(&mut self.leaves);
+        Some(leaves.refit(Arc::make_mut(&mut self.bvh), &self.shapes))
     }
 }
 

@@ -252,16 +252,14 @@ impl Scene {
                 max = max.max(p);
             }
         };
+        let mut used: Vec<Option<Vec<DVec3>>> = vec![None; self.geometries.len()];
         for instance in &self.instances {
             let to_world = instance.world_from_object;
             match self.geometries[instance.geometry].as_ref() {
                 Geometry::Mesh(mesh) => {
-                    for triangle in &mesh.triangles {
-                        for corner in &triangle.corners {
-                            include(
-                                to_world.transform_point3(mesh.positions[corner.position as usize]),
-                            );
-                        }
+                    let used = used[instance.geometry].get_or_insert_with(|| mesh.used_positions());
+                    for &position in used.iter() {
+                        include(to_world.transform_point3(position));
                     }
                 }
                 Geometry::Sphere { radius, .. } => {

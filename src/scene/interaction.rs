@@ -1,7 +1,7 @@
 use glam::Vec3;
 
 use super::PreparedScene;
-use crate::geometry::{Hit, triangle_departure, triangle_point_and_error};
+use crate::geometry::{Hit, SurfacePoint};
 use crate::math::Ray;
 
 /// The surface at a hit, in tracing space.
@@ -37,12 +37,12 @@ impl PreparedScene {
                 primitive: hit.primitive,
             };
         }
-        let vertices = shapes.vertices(hit.primitive as usize);
-        let at = triangle_point_and_error(&vertices, hit.b1, hit.b2);
-        let (departure, error) = triangle_departure(&vertices, hit.b1, hit.b2, at);
-        let [a, b, c] = vertices;
-        let (ab, ac) = ((b - a).as_dvec3(), (c - a).as_dvec3());
-        let geometric_normal = ab.cross(ac).normalize_or(glam::DVec3::Z).as_vec3();
+        let SurfacePoint {
+            point,
+            departure,
+            error,
+            normal: geometric_normal,
+        } = self.aggregate().surface_point(hit);
         let shading_normal =
             self.corner_normals(hit.primitive)
                 .map_or(geometric_normal, |[n0, n1, n2]| {
@@ -50,7 +50,7 @@ impl PreparedScene {
                     (b0 * n0 + hit.b1 * n1 + hit.b2 * n2).normalize_or(geometric_normal)
                 });
         SurfaceInteraction {
-            point: at.0,
+            point,
             departure,
             error,
             geometric_normal,

@@ -5,12 +5,16 @@ mod builder;
 mod description;
 mod emitters;
 mod initial_camera;
+mod instancing;
 mod interaction;
 mod lights;
+mod placed_mesh;
 mod prepare;
+mod prepare_cache;
 mod prepared;
 mod procedural;
 mod shading_normals;
+mod shared_mesh;
 
 pub use builder::SceneBuilder;
 pub use description::{
@@ -18,7 +22,9 @@ pub use description::{
     LightNode, Material, Scene, Surface, UpAxis,
 };
 pub use initial_camera::initial_camera;
+pub use instancing::Instancing;
 pub use interaction::SurfaceInteraction;
-pub use prepare::{PrepareSettings, prepare};
+pub use prepare::{PrepareProgress, PrepareSettings, prepare, prepare_with};
+pub use prepare_cache::{PrepareCache, PrepareCounts};
 pub use prepared::PreparedScene;
 pub use procedural::{PROCEDURAL, cornell_box, procedural};

@@ -3,17 +3,21 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use glam::{DMat3, DMat4, DVec3, Vec3};
+use glam::{DVec3, Vec3};
 
 use super::emitters::{Emitters, EmittingRectangle, SurfaceEmission, emitters};
+use super::instancing::{Instancing, shared};
 use super::lights::{LightTable, light_nodes};
+use super::placed_mesh::PlacedMesh;
+use super::prepare_cache::PrepareCache;
 use super::prepared::{DARK, FLAT, Owner, PreparedMaterial, Tables};
-use super::shading_normals::{NormalRule, corner_normals};
+use super::shading_normals::NormalRule;
+use super::shared_mesh::{MeshTables, SharedMesh};
 use super::{Geometry, Instance, PreparedScene, Scene, Surface};
 use crate::bsdf::{Bsdf, Diffuse, Glass, Microfacet, Mirror, Refraction};
 use crate::bvh::BvhSettings;
 use crate::color::Rgb;
-use crate::geometry::{Aggregate, Mesh, Shapes, Sphere};
+use crate::geometry::{Aggregate, Mesh, Placement, Shapes, Sphere};
 use crate::light::{AreaLight, AreaShape, Light, SphereLight};
 use crate::math::{Isa, Normalization};
 
@@ -26,21 +30,31 @@ pub struct PrepareSettings {
     pub course_compatible: bool,
     /// Instruction set to trace with; the best of this processor when `None`. Must be available.
     pub isa: Option<Isa>,
+    /// Which meshes are shared.
+    pub instancing: Instancing,
 }
+
+/// Asked with a stage and its finished fraction, 0..1, from any thread: whether to go on.
+pub type PrepareProgress<'a> = dyn Fn(&'static str, f32) -> ControlFlow<()> + Sync + 'a;
 
 /// Makes `scene` ready for tracing; `None` when `progress` (stage, fraction 0..1) breaks.
 pub fn prepare(
     scene: &Scene,
     settings: &PrepareSettings,
-    progress: &(dyn Fn(&'static str, f32) -> ControlFlow<()> + Sync),
+    progress: &PrepareProgress<'_>,
 ) -> Option<PreparedScene> {
-    let mut assembly = Assembly::new(scene, settings.course_compatible);
-    for (index, instance) in scene.instances.iter().enumerate() {
-        let fraction = index as f32 / scene.instances.len() as f32;
-        progress("placing geometry", fraction).continue_value()?;
-        assembly.place(index, instance);
-    }
-    assembly.place_rectangles();
+    prepare_with(scene, settings, &mut PrepareCache::default(), progress)
+}
+
+/// The same, with what the preparation of the scene before an edit has left in `cache`.
+pub fn prepare_with(
+    scene: &Scene,
+    settings: &PrepareSettings,
+    cache: &mut PrepareCache,
+    progress: &PrepareProgress<'_>,
+) -> Option<PreparedScene> {
+    cache.begin(scene);
+    let assembly = assemble(scene, settings, cache, progress)?;
     let Assembly {
         normalization,
         shapes,
@@ -50,6 +64,8 @@ pub fn prepare(
         corner_normals,
         mut table,
         emitters,
+        shared,
+        placed,
         ..
     } = assembly.into_primitive_order();
     light_nodes(
@@ -59,10 +75,13 @@ pub fn prepare(
         &mut table,
     );
     let sampler = table.sampler(&shapes);
-    let aggregate = Aggregate::build_with(shapes, settings.bvh, &|fraction| {
-        progress("building the BVH", fraction)
-    })?
-    .with_isa(settings.isa.unwrap_or_else(Isa::best));
+    let aggregate = cache
+        .own(shapes, settings.bvh, &|fraction| {
+            progress("building the BVH", fraction)
+        })?
+        .with_instances(placed)
+        .with_isa(settings.isa.unwrap_or_else(Isa::best));
+    cache.end(scene);
     let instance_names = scene
         .instances
         .iter()
@@ -80,6 +99,7 @@ pub fn prepare(
         owner_of,
         smooth,
         corner_normals,
+        shared,
         materials: materials(scene),
         instance_names,
         lights: table.lights,
@@ -93,6 +113,42 @@ pub fn prepare(
         aggregate,
         tables: Arc::new(tables),
     })
+}
+
+/// Places everything, and builds what is shared.
+fn assemble<'a>(
+    scene: &'a Scene,
+    settings: &PrepareSettings,
+    cache: &mut PrepareCache,
+    progress: &PrepareProgress<'_>,
+) -> Option<Assembly<'a>> {
+    let mut assembly = Assembly::new(scene, settings.course_compatible);
+    let rule = assembly.normal_rule;
+    let was_moved = |geometry: &Arc<Geometry>| cache.was_moved(geometry);
+    let shares = shared(
+        scene,
+        &assembly.emitters,
+        rule,
+        settings.instancing,
+        &was_moved,
+    );
+    for (index, (instance, shares)) in scene.instances.iter().zip(shares).enumerate() {
+        let fraction = index as f32 / scene.instances.len() as f32;
+        progress("placing geometry", fraction).continue_value()?;
+        let geometry = &scene.geometries[instance.geometry];
+        if let (true, Geometry::Mesh(mesh)) = (shares, geometry.as_ref()) {
+            let building = |fraction| progress("building shared meshes", fraction);
+            let (tables, tree) = cache.mesh((geometry, mesh), rule, settings.bvh, &building)?;
+            let normalization = &assembly.normalization;
+            if let Some(placement) = tables.placement(instance.world_from_object, normalization) {
+                assembly.share((index, instance), tables, (tree, placement));
+                continue;
+            }
+        }
+        assembly.place(index, instance);
+    }
+    assembly.place_rectangles();
+    Some(assembly)
 }
 
 /// The scene's materials, and a black one for the surfaces of area lights.
@@ -135,7 +191,7 @@ struct Assembly<'a> {
     normalization: Normalization,
     emitters: Emitters,
     shapes: Shapes,
-    owners: Vec<(u32, Owner)>,
+    owners: Vec<Owner>,
     /// Owners of triangles, then of spheres once [`Self::into_primitive_order`] ran.
     owner_of: Vec<u32>,
     sphere_owner_of: Vec<u32>,
@@ -144,6 +200,9 @@ struct Assembly<'a> {
     table: LightTable,
     /// Spheres that emit: index among the spheres, emission, owner.
     sphere_lights: Vec<(u32, SurfaceEmission, u32)>,
+    /// Instances that share their meshes, and where those stand.
+    shared: Vec<SharedMesh>,
+    placed: Vec<(Arc<Aggregate>, Placement)>,
 }
 
 impl<'a> Assembly<'a> {
@@ -180,18 +239,38 @@ impl<'a> Assembly<'a> {
             corner_normals: Vec::new(),
             table: LightTable::new(course_compatible),
             sphere_lights: Vec::new(),
+            shared: Vec::new(),
+            placed: Vec::new(),
         }
     }
 
     fn own(&mut self, material: usize, instance: usize) -> u32 {
-        let first = self.shapes.triangles.len() as u32;
-        let owner = Owner {
+        self.owners.push(Owner {
             material: material as u32,
             light: DARK,
             instance: instance as u32,
-        };
-        self.owners.push((first, owner));
+        });
         self.owners.len() as u32 - 1
+    }
+
+    /// An instance whose triangles are not copied.
+    fn share(
+        &mut self,
+        (index, instance): (usize, &Instance),
+        tables: Arc<MeshTables>,
+        placed: (Arc<Aggregate>, Placement),
+    ) {
+        let slots = instance.materials.len().clamp(1, usize::from(u16::MAX));
+        let first_owner = self.owners.len() as u32;
+        for slot in 0..slots {
+            self.own(instance.materials.get(slot).copied().unwrap_or(0), index);
+        }
+        self.shared.push(SharedMesh {
+            tables,
+            first_owner,
+            slots: slots as u16,
+        });
+        self.placed.push(placed);
     }
 
     fn place(&mut self, index: usize, instance: &Instance) {
@@ -276,7 +355,7 @@ impl<'a> Assembly<'a> {
             primitives: slot.primitives,
         };
         let light = AreaLight::new(&self.shapes, shape, emission.radiance, emission.two_sided);
-        self.owners[slot.owner as usize].1.light = self.table.add_surface(Light::Area(light));
+        self.owners[slot.owner as usize].light = self.table.add_surface(Light::Area(light));
     }
 
     /// Area lights without a mesh become visible one-sided rectangles (not in the course's program).
@@ -342,7 +421,7 @@ impl<'a> Assembly<'a> {
                 radiance: emission.radiance,
                 two_sided: emission.two_sided,
             };
-            self.owners[owner as usize].1.light = self.table.add_surface(Light::Sphere(light));
+            self.owners[owner as usize].light = self.table.add_surface(Light::Sphere(light));
         }
         if self.corner_normals.is_empty() {
             self.smooth = Vec::new();
@@ -356,50 +435,4 @@ struct Slot {
     owner: u32,
     emission: Option<SurfaceEmission>,
     primitives: Vec<u32>,
-}
-
-/// A mesh in world space, still in file units and double precision.
-struct PlacedMesh {
-    positions: Vec<DVec3>,
-    /// Area-weighted, on the side that the file means as front.
-    face_normals: Vec<DVec3>,
-    corner_normals: Vec<Option<[Vec3; 3]>>,
-    /// The placement turns triangles inside out, so their winding must be turned back.
-    is_mirrored: bool,
-}
-
-impl PlacedMesh {
-    fn new(mesh: &Mesh, world_from_object: DMat4, rule: NormalRule) -> Self {
-        let linear = DMat3::from_mat4(world_from_object);
-        let determinant = linear.determinant();
-        let is_mirrored = determinant < 0.0;
-        let positions: Vec<DVec3> = mesh
-            .positions
-            .iter()
-            .map(|&p| world_from_object.transform_point3(p))
-            .collect();
-        let side = if is_mirrored { -1.0 } else { 1.0 };
-        let face_normals: Vec<DVec3> = mesh
-            .triangles
-            .iter()
-            .map(|triangle| {
-                let [a, b, c] = triangle
-                    .corners
-                    .map(|corner| positions[corner.position as usize]);
-                (b - a).cross(c - a) * side
-            })
-            .collect();
-        let normal_to_world = if determinant == 0.0 {
-            linear
-        } else {
-            linear.inverse().transpose()
-        };
-        let corner_normals = corner_normals(mesh, &face_normals, normal_to_world, rule);
-        Self {
-            positions,
-            face_normals,
-            corner_normals,
-            is_mirrored,
-        }
-    }
 }

@@ -1,12 +1,14 @@
+use std::collections::HashSet;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use glam::Vec3;
 
 use super::SurfaceInteraction;
+use super::shared_mesh::SharedMesh;
 use crate::bsdf::Bsdf;
 use crate::color::Rgb;
-use crate::geometry::{Aggregate, Shapes};
+use crate::geometry::{Aggregate, Instance, InstanceStats, Shapes};
 use crate::light::{Light, LightHit, LightSampler};
 use crate::math::Normalization;
 
@@ -43,12 +45,15 @@ pub struct PreparedScene {
 #[derive(Debug)]
 pub(super) struct Tables {
     pub(super) normalization: Normalization,
-    /// One owner for each run of primitives, and the first primitive of each run.
-    pub(super) owners: Vec<(u32, Owner)>,
+    /// One owner for each material slot of each instance.
+    pub(super) owners: Vec<Owner>,
+    /// For each primitive that is not shared.
     pub(super) owner_of: Vec<u32>,
     /// For each triangle its place in `corner_normals`, or [`FLAT`]; empty when all are flat.
     pub(super) smooth: Vec<u32>,
     pub(super) corner_normals: Vec<[Vec3; 3]>,
+    /// In the order of the instances of the aggregate.
+    pub(super) shared: Vec<SharedMesh>,
     pub(super) materials: Vec<PreparedMaterial>,
     pub(super) instance_names: Vec<String>,
     pub(super) lights: Vec<Light>,
@@ -80,7 +85,7 @@ impl PreparedScene {
         })
     }
 
-    /// The shapes.
+    /// The shapes that are not shared; lights are among them.
     pub fn shapes(&self) -> &Shapes {
         self.aggregate.shapes()
     }
@@ -96,13 +101,48 @@ impl PreparedScene {
     }
 
     fn owner(&self, primitive: u32) -> &Owner {
-        &self.tables.owners[self.tables.owner_of[primitive as usize] as usize].1
+        let owner = match self.tables.owner_of.get(primitive as usize) {
+            Some(&owner) => owner as usize,
+            None => {
+                let (_, shared, triangle) = self.shared(primitive);
+                shared.owner(triangle)
+            }
+        };
+        &self.tables.owners[owner]
+    }
+
+    /// The instance that shares triangle `primitive`, and the triangle of its mesh.
+    fn shared(&self, primitive: u32) -> (&Instance, &SharedMesh, usize) {
+        let instances = self.aggregate.instances();
+        let (instances, (number, triangle)) = instances
+            .and_then(|instances| Some((instances, instances.find(primitive)?)))
+            .expect("a primitive is one of the shapes or of an instance");
+        let (instance, shared) = (&instances.list()[number], &self.tables.shared[number]);
+        (instance, shared, triangle)
     }
 
     /// Unit normals at the corners of triangle `primitive`; `None` when it is flat.
     pub fn corner_normals(&self, primitive: u32) -> Option<[Vec3; 3]> {
+        if primitive as usize >= self.tables.owner_of.len() {
+            let (instance, shared, triangle) = self.shared(primitive);
+            let normals = shared.tables.corner_normals(triangle)?;
+            return Some(normals_in_world(instance, triangle, normals));
+        }
         let index = *self.tables.smooth.get(primitive as usize)?;
         (index != FLAT).then(|| self.tables.corner_normals[index as usize])
+    }
+
+    /// What the instances share and what that takes, tables included; all zero without instances.
+    pub fn instance_stats(&self) -> InstanceStats {
+        let mut stats = self.aggregate.instance_stats();
+        let mut seen = HashSet::new();
+        for shared in &self.tables.shared {
+            if seen.insert(Arc::as_ptr(&shared.tables)) {
+                stats.bytes += shared.tables.bytes();
+            }
+        }
+        stats.bytes += size_of_val(self.tables.shared.as_slice());
+        stats
     }
 
     /// The material of `primitive`.
@@ -230,6 +270,26 @@ impl PreparedScene {
         let counts =
             |light: &&u32| self.tables.course_compatible || !self.light(**light).is_delta();
         (self.tables.sampled.iter().filter(counts).count() as u32).max(1)
+    }
+}
+
+/// Corner normals of a triangle of a mesh, in the order and the directions that they have in the
+/// world: on the side of the triangle's front, as they were in the space of the mesh.
+fn normals_in_world(instance: &Instance, triangle: usize, normals: &[Vec3; 3]) -> [Vec3; 3] {
+    let placement = instance.placement();
+    let to_world = placement.object_from_world().matrix3.transpose();
+    let [a, b, c] = instance.vertices(triangle);
+    let front = (b - a).cross(c - a);
+    let [na, nb, nc] = normals.map(|normal| {
+        let world = (to_world * normal.as_dvec3()).normalize_or_zero();
+        // A stretch may carry a normal that is nearly in the plane to the other side.
+        let side = if world.dot(front) < 0.0 { -1.0 } else { 1.0 };
+        (world * side).as_vec3()
+    });
+    if placement.is_mirrored() {
+        [na, nc, nb]
+    } else {
+        [na, nb, nc]
     }
 }
 

@@ -11,7 +11,7 @@ const CREASE_COSINE: f64 = 0.5;
 const FLAT_COSINE: f32 = 0.999_999;
 
 /// Which corner normals a mesh gets.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum NormalRule {
     /// The file's where it has them, else smooth across edges below 60 degrees, else flat.
     File,
@@ -61,7 +61,8 @@ pub(super) fn corner_normals(
         .collect()
 }
 
-fn has_normal(mesh: &Mesh, corner: Corner) -> bool {
+/// True when the file gives the normal of a corner.
+pub(super) fn has_normal(mesh: &Mesh, corner: Corner) -> bool {
     (corner.normal as usize) < mesh.normals.len()
 }
 

@@ -3,6 +3,7 @@
 
 mod degenerate;
 mod exact;
+mod instances;
 mod oracle;
 mod scenes;
 mod selfhit;

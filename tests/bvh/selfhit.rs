@@ -42,7 +42,7 @@ fn wedge(angle: f32) -> Shapes {
 }
 
 /// A direction on the side of `normal`; one in five at a cosine of 1e-6 to 1e-1.
-fn leaving(random: &mut Random, normal: Vec3) -> Vec3 {
+pub(crate) fn leaving(random: &mut Random, normal: Vec3) -> Vec3 {
     loop {
         let mut d = random.direction();
         if random.unit() < 0.2 {
@@ -57,7 +57,7 @@ fn leaving(random: &mut Random, normal: Vec3) -> Vec3 {
 
 /// Where on a triangle a ray starts.
 #[derive(Clone, Copy, Debug)]
-enum Start {
+pub(crate) enum Start {
     Anywhere,
     NearEdge,
     Edge,
@@ -65,7 +65,7 @@ enum Start {
 }
 
 /// The three barycentric weights of a point.
-fn weights(random: &mut Random, start: Start) -> [f32; 3] {
+pub(crate) fn weights(random: &mut Random, start: Start) -> [f32; 3] {
     let near = match start {
         Start::Anywhere => random.unit(),
         Start::NearEdge => 10.0_f32.powf(-7.0 * random.unit()),
@@ -82,13 +82,13 @@ fn weights(random: &mut Random, start: Start) -> [f32; 3] {
 
 /// How rays that leave a closed mesh go astray.
 #[derive(Debug, Default, PartialEq, Eq)]
-struct Strays {
+pub(crate) struct Strays {
     /// They start inside and meet nothing.
-    escapes: usize,
+    pub(crate) escapes: usize,
     /// They meet the triangle they leave.
-    self_hits: usize,
+    pub(crate) self_hits: usize,
     /// They meet a triangle from the side that they cannot be on.
-    crossings: usize,
+    pub(crate) crossings: usize,
 }
 
 /// A closed mesh and the unit normals of its triangles by winding.

@@ -4,7 +4,7 @@ mod compare;
 mod scenes;
 
 use softbox::integrator::{PathSettings, PathTracer};
-use softbox::scene::PrepareSettings;
+use softbox::scene::{Instancing, PrepareSettings};
 use softbox::settings::{MaxDepth, Mode};
 
 use compare::{Comparison, ray_camera};
@@ -59,6 +59,27 @@ fn environment_and_sky() {
 #[test]
 fn smooth_mesh() {
     agrees_in_all_modes(&scenes::smooth_meshes());
+}
+
+/// Every mesh that can be is an instance, seen in both precisions.
+#[test]
+fn shared_meshes() {
+    let shared = PrepareSettings {
+        instancing: Instancing::Always,
+        ..PrepareSettings::default()
+    };
+    for view in [
+        scenes::diffuse(),
+        scenes::mirror_and_glass(),
+        scenes::rough_metal(),
+        scenes::smooth_meshes(),
+    ] {
+        let scene = view.prepared(&shared);
+        assert!(scene.instance_stats().instances > 0);
+        let camera = ray_camera(&scene, &view.camera);
+        let tracer = PathTracer::new(&scene, &camera, SETTINGS);
+        Comparison::new(&tracer, &tracer, 16).check("shared");
+    }
 }
 
 #[test]

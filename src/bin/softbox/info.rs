@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 use anyhow::{Context, anyhow};
 use serde::Serialize;
 use softbox::bvh::BvhStats;
+use softbox::geometry::InstanceStats;
 use softbox::io::{ImportReport, Loaded};
 use softbox::scene::{PrepareSettings, prepare};
 
@@ -25,6 +26,7 @@ struct Description {
     bvh: BvhStats,
     /// End-point overlap.
     epo: f64,
+    instancing: InstanceStats,
 }
 
 /// Points at which the end-point overlap is taken.
@@ -43,13 +45,14 @@ pub(crate) fn run(args: &InfoArgs) -> Result<(), Failure> {
         scene: scene.name.clone(),
         bounds_min: bounds.map(|(min, _)| min.to_array()),
         bounds_max: bounds.map(|(_, max)| max.to_array()),
-        primitives: prepared.shapes().len(),
+        primitives: prepared.aggregate().primitive_count(),
         lights: prepared.light_count(),
         added_light,
         report,
         decisions: prepared.notes().to_vec(),
         bvh: prepared.aggregate().stats(),
         epo: prepared.aggregate().end_point_overlap(OVERLAP_SAMPLES),
+        instancing: prepared.instance_stats(),
     };
     print(&description, args.json)
         .context("Cannot write to standard output")
@@ -81,6 +84,18 @@ fn print(description: &Description, as_json: bool) -> std::io::Result<()> {
         "at run time: {} primitives, {} lights",
         description.primitives, description.lights
     )?;
+    let shared = &description.instancing;
+    if shared.instances > 0 {
+        writeln!(
+            out,
+            "instances: {} of {} shared meshes, {} triangles that rays meet as {}, {} bytes",
+            shared.instances,
+            shared.meshes,
+            shared.unique_triangles,
+            shared.virtual_triangles,
+            shared.bytes
+        )?;
+    }
     let bvh = &description.bvh;
     writeln!(
         out,

@@ -32,10 +32,7 @@ impl Surface {
                 primitive,
             };
         }
-        let [a, b, c] = scene
-            .shapes()
-            .vertices(primitive as usize)
-            .map(|v| v.as_dvec3());
+        let [a, b, c] = scene.aggregate().vertices(primitive);
         let geometric_normal = (b - a).cross(c - a).normalize();
         let (b1, b2) = hit.weights;
         let shading_normal = scene

@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 
-use crate::geometry::{Shapes, Sphere};
+use crate::bvh::{Bvh, NodeId};
+use crate::geometry::{Aggregate, Instance, Sphere};
 use crate::math::Aabb;
 use crate::scene::PreparedScene;
 
@@ -25,26 +26,65 @@ pub(super) struct Hit {
 
 /// The first hit of `ray`.
 pub(super) fn closest(scene: &PreparedScene, ray: &Ray) -> Option<Hit> {
-    let (shapes, bvh) = (scene.shapes(), scene.aggregate().bvh());
+    let aggregate = scene.aggregate();
     let mut best: Option<Hit> = None;
+    walk(aggregate.bvh(), ray, &mut best, &mut |node, best| {
+        for primitive in aggregate.primitives(node) {
+            take(best, ray, meet(aggregate, primitive, ray));
+        }
+    });
+    let Some(instances) = aggregate.instances() else {
+        return best;
+    };
+    walk(instances.bvh(), ray, &mut best, &mut |node, best| {
+        for number in instances.below(node) {
+            meet_instance(aggregate, &instances.list()[number], ray, best);
+        }
+    });
+    best
+}
+
+/// Goes down the tree of the mesh in the space of the mesh; its triangles are met in the world.
+fn meet_instance(aggregate: &Aggregate, instance: &Instance, ray: &Ray, best: &mut Option<Hit>) {
+    let to_object = instance.placement().object_from_world();
+    let inside = Ray {
+        origin: to_object.transform_point3(ray.origin),
+        direction: to_object.transform_vector3(ray.direction),
+        t_max: ray.t_max,
+    };
+    let mesh = instance.mesh();
+    walk(mesh.bvh(), &inside, best, &mut |node, best| {
+        for triangle in mesh.primitives(node) {
+            let primitive = instance.first_primitive() + triangle;
+            take(best, ray, meet(aggregate, primitive, ray));
+        }
+    });
+}
+
+/// Shows `leaf` the leaves of a tree that `ray` meets before the best hit so far.
+fn walk(
+    bvh: &Bvh,
+    ray: &Ray,
+    best: &mut Option<Hit>,
+    leaf: &mut dyn FnMut(NodeId, &mut Option<Hit>),
+) {
     let mut stack: Vec<_> = bvh.root().into_iter().collect();
     while let Some(node) = stack.pop() {
         let t_max = best.map_or(ray.t_max, |hit| hit.t);
         if !meets_box(ray, &bvh.bounds(node), t_max) {
             continue;
         }
-        if let Some(children) = bvh.children(node) {
-            stack.extend(children);
-            continue;
-        }
-        for primitive in scene.aggregate().primitives(node) {
-            let t_max = best.map_or(ray.t_max, |hit| hit.t);
-            best = meet(shapes, primitive, ray)
-                .filter(|hit| hit.t < t_max)
-                .or(best);
+        match bvh.children(node) {
+            Some(children) => stack.extend(children),
+            None => leaf(node, best),
         }
     }
-    best
+}
+
+/// Keeps `hit` if it is nearer than the best so far.
+fn take(best: &mut Option<Hit>, ray: &Ray, hit: Option<Hit>) {
+    let t_max = best.map_or(ray.t_max, |hit| hit.t);
+    *best = hit.filter(|hit| hit.t < t_max).or(*best);
 }
 
 /// True when anything lies on `ray`.
@@ -65,12 +105,11 @@ fn meets_box(ray: &Ray, bounds: &Aabb, t_max: f64) -> bool {
     near <= far
 }
 
-fn meet(shapes: &Shapes, primitive: u32, ray: &Ray) -> Option<Hit> {
-    let (t, weights) = match shapes.sphere(primitive) {
+fn meet(aggregate: &Aggregate, primitive: u32, ray: &Ray) -> Option<Hit> {
+    let (t, weights) = match aggregate.shapes().sphere(primitive) {
         Some(sphere) => (meet_sphere(sphere, ray)?, (0.0, 0.0)),
         None => {
-            let vertices = shapes.vertices(primitive as usize);
-            let (t, b1, b2) = meet_triangle(vertices.map(|v| v.as_dvec3()), ray)?;
+            let (t, b1, b2) = meet_triangle(aggregate.vertices(primitive), ray)?;
             (t, (b1, b2))
         }
     };

@@ -69,7 +69,7 @@ impl Refiner {
             let fraction = task.fraction();
             return shared.update_status(|status| status.tree = TreeState::Refining { fraction });
         }
-        let primitives = scene.shapes().len();
+        let primitives = scene.shapes().len() + scene.aggregate().instance_stats().unique_triangles;
         let is_interactive = shared.options.interactive;
         let pays = is_interactive || is_worth_it(primitives, settings, picture.counts());
         if self.is_done || scene.aggregate().is_refined() || !pays {

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use super::picture::Picture;
 use super::refiner::Refiner;
 use super::{Shared, lock};
-use crate::scene::{PrepareSettings, PreparedScene, prepare};
+use crate::scene::{PrepareCache, PrepareSettings, PreparedScene, prepare_with};
 use crate::session::change::Change;
 use crate::session::workers::{Workers, lower_priority};
 use crate::session::{RenderJob, SessionState};
@@ -25,6 +25,8 @@ pub(super) struct Turn<'a> {
     shared: &'a Shared,
     workers: Workers,
     scene: Option<Arc<PreparedScene>>,
+    /// What the next scene may take over from this one.
+    cache: PrepareCache,
     refiner: Refiner,
     picture: Option<Picture>,
     generation: u64,
@@ -47,6 +49,7 @@ impl<'a> Turn<'a> {
             shared,
             workers: Workers::new(1, shared.options.interactive),
             scene: None,
+            cache: PrepareCache::default(),
             refiner: Refiner::default(),
             picture: None,
             generation: 0,
@@ -98,6 +101,7 @@ impl<'a> Turn<'a> {
     pub(super) fn recover(&mut self) {
         self.picture = None;
         self.scene = None;
+        self.cache = PrepareCache::default();
         self.refiner.reset(self.shared);
         self.has_news = false;
         self.workers = self.workers.resized(self.workers.threads());
@@ -216,11 +220,13 @@ impl<'a> Turn<'a> {
             bvh: job.settings.bvh,
             course_compatible: job.settings.course_compatible,
             isa: job.settings.isa,
+            ..PrepareSettings::default()
         };
         let started = Instant::now();
+        let cache = &mut self.cache;
         let prepared = self
             .workers
-            .install(|| prepare(&job.scene, &settings, &progress));
+            .install(|| prepare_with(&job.scene, &settings, cache, &progress));
         let Some(prepared) = prepared else {
             return ControlFlow::Break(());
         };
@@ -240,6 +246,7 @@ impl<'a> Turn<'a> {
     /// same hits.
     fn take_better_tree(&mut self) {
         if let Some(scene) = self.refiner.take(self.shared) {
+            self.cache.adopt(&scene);
             let scene = Arc::new(scene);
             *lock(&self.shared.prepared) = Some(Arc::clone(&scene));
             self.scene = Some(scene);

@@ -5,7 +5,7 @@ use glam::{DVec3, Vec2, Vec3};
 use softbox::camera::{Camera, Framing};
 use softbox::geometry::Shapes;
 use softbox::math::Normalization;
-use softbox::scene::{PrepareSettings, PreparedScene, Scene, initial_camera, prepare};
+use softbox::scene::{Instancing, PrepareSettings, PreparedScene, Scene, initial_camera, prepare};
 use softbox::settings::CameraRule;
 
 use super::Random;
@@ -99,10 +99,13 @@ impl Subject {
             lens_radius: 0.0,
             ..initial_camera(&scene, CameraRule::Auto, false)
         };
-        let prepared = prepare(&scene, &PrepareSettings::default(), &|_, _| {
-            ControlFlow::Continue(())
-        })
-        .ok_or_else(|| anyhow!("Preparing the scene broke off."))?;
+        // Other systems get every triangle.
+        let settings = PrepareSettings {
+            instancing: Instancing::Never,
+            ..PrepareSettings::default()
+        };
+        let prepared = prepare(&scene, &settings, &|_, _| ControlFlow::Continue(()))
+            .ok_or_else(|| anyhow!("Preparing the scene broke off."))?;
         let Shapes {
             positions,
             triangles,

@@ -231,7 +231,8 @@ fn tint_triangles(
         .primitives(node)
         .filter(|&p| (p as usize) < shapes.triangles.len());
     for primitive in triangles.step_by(step) {
-        add_triangle(mesh, projector, shapes.vertices(primitive as usize), tint);
+        let vertices = aggregate.vertices(primitive).map(|v| v.as_vec3());
+        add_triangle(mesh, projector, vertices, tint);
     }
 }
 

@@ -1,0 +1,158 @@
+use super::instances::InstanceBlock;
+use super::{Hit, Instances, TraceCounts};
+use crate::bvh::{BLOCK, Leaves, SlabRay, Work};
+use crate::math::{Isa, Ray};
+
+/// The hierarchy over the instances as rays see it.
+#[derive(Clone, Copy, Debug)]
+struct Walk<'a> {
+    instances: &'a Instances,
+    isa: Isa,
+}
+
+/// A ray among the instances.
+#[derive(Clone, Copy, Debug)]
+struct Query {
+    /// The best hit so far.
+    hit: Hit,
+    /// Work in the trees of the meshes.
+    work: Work,
+}
+
+impl Instances {
+    /// Puts the hits with instances in the place of those of `hits` that lie behind them.
+    pub(super) fn closest_hit(
+        &self,
+        isa: Isa,
+        rays: &[Ray],
+        hits: &mut [Hit],
+        counts: &mut TraceCounts,
+    ) {
+        // What instances have in common with `hits` has a larger id, so it must lie nearer.
+        let limited = |(ray, hit): (&Ray, &Hit)| Ray {
+            t_max: ray.t_max.min(hit.t),
+            ..*ray
+        };
+        let limited: Vec<Ray> = rays.iter().zip(hits.iter()).map(limited).collect();
+        self.trace::<false>(isa, &limited, counts, |i, hit| hits[i] = hit);
+    }
+
+    /// Tells for the rays that are not occluded yet whether an instance lies on them.
+    pub(super) fn any_hit(
+        &self,
+        isa: Isa,
+        rays: &[Ray],
+        occluded: &mut [bool],
+        counts: &mut TraceCounts,
+    ) {
+        let open: Vec<usize> = (0..rays.len()).filter(|&i| !occluded[i]).collect();
+        let rays: Vec<Ray> = open.iter().map(|&i| rays[i]).collect();
+        self.trace::<true>(isa, &rays, counts, |i, _| occluded[open[i]] = true);
+    }
+
+    /// Gives the number of each ray that meets an instance, and its hit, to `met`.
+    fn trace<const ANY: bool>(
+        &self,
+        isa: Isa,
+        rays: &[Ray],
+        counts: &mut TraceCounts,
+        mut met: impl FnMut(usize, Hit),
+    ) {
+        let walk = Walk {
+            instances: self,
+            isa,
+        };
+        let mut inside = Work::default();
+        let top = self.bvh().traverse::<ANY, _>(isa, &walk, rays, |i, query| {
+            if let Some(query) = query {
+                inside.nodes += query.work.nodes;
+                inside.blocks += query.work.blocks;
+                if !query.hit.is_miss() {
+                    met(i, query.hit);
+                }
+            }
+        });
+        counts.box_tests += (top.nodes + inside.nodes) * 8;
+        counts.primitive_tests += inside.blocks * BLOCK as u64;
+    }
+}
+
+impl Walk<'_> {
+    /// Meets one instance.
+    ///
+    /// The result depends on the ray and the instance alone, as with a primitive: a hit counts only
+    /// if the ray meets the box of the instance, and lies no nearer than that box.
+    fn meet<const ANY: bool>(&self, number: usize, ray: (&Ray, &SlabRay), query: &mut Query) {
+        let (ray, slab) = ray;
+        let Some(front) = slab.enter(&self.instances.boxes()[number]) else {
+            return;
+        };
+        if front > query.hit.t || front >= slab.t_max() {
+            return;
+        }
+        let instance = &self.instances.list()[number];
+        // A hit at the same parameter may have the smaller id.
+        let t_max = ray.t_max.min(query.hit.t.next_up());
+        let place = instance.placement();
+        let inside = place.ray_to_object(ray, t_max);
+        let (hit, work) = instance.mesh().trace_one::<ANY>(self.isa, &inside);
+        query.work.nodes += work.nodes;
+        query.work.blocks += work.blocks;
+        if hit.is_miss() {
+            return;
+        }
+        let (b1, b2) = if place.is_mirrored() {
+            (hit.b2, hit.b1)
+        } else {
+            (hit.b1, hit.b2)
+        };
+        let hit = Hit {
+            t: hit.t.max(front),
+            primitive: instance.first_primitive() + hit.primitive,
+            b1,
+            b2,
+        };
+        let best = &query.hit;
+        if hit.t < best.t || (hit.t == best.t && hit.primitive < best.primitive) {
+            query.hit = hit;
+        }
+    }
+}
+
+impl Leaves for Walk<'_> {
+    type Query = Query;
+    type Block = InstanceBlock;
+
+    fn query(&self, _: &Ray, _: &SlabRay) -> Query {
+        Query {
+            hit: Hit::MISS,
+            work: Work::default(),
+        }
+    }
+
+    fn visit<const ANY: bool>(
+        &self,
+        first: u32,
+        ray: (&Ray, &SlabRay),
+        query: &mut Query,
+        blocks: &mut u64,
+    ) -> f32 {
+        for block in &self.instances.blocks()[first as usize..] {
+            *blocks += 1;
+            for number in block.ids() {
+                self.meet::<ANY>(number, ray, query);
+                if ANY && !query.hit.is_miss() {
+                    return f32::NEG_INFINITY;
+                }
+            }
+            if !block.has_more {
+                break;
+            }
+        }
+        query.hit.t.min(ray.1.t_max())
+    }
+
+    fn blocks(&self) -> &[InstanceBlock] {
+        self.instances.blocks()
+    }
+}
