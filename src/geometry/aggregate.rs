@@ -241,28 +241,27 @@ impl Aggregate {
         hits[0]
     }
 
-    /// One ray through the shapes, without the instances.
-    pub(super) fn trace_one<const ANY: bool>(&self, isa: Isa, ray: &Ray) -> (Hit, Work) {
-        let mut hit = Hit::MISS;
-        let rays = std::slice::from_ref(ray);
-        let work = self
-            .bvh
-            .traverse::<ANY, _>(isa, &*self.leaves, rays, |_, query| {
-                hit = query.map_or(Hit::MISS, |query| query.hit);
-            });
-        (hit, work)
+    /// Gives `answer` the number of each ray and its hit with the shapes, without the instances; in
+    /// any order.
+    pub(super) fn trace_shapes<const ANY: bool>(
+        &self,
+        isa: Isa,
+        rays: &[Ray],
+        mut answer: impl FnMut(usize, Hit),
+    ) -> Work {
+        let leaves = &*self.leaves;
+        self.bvh.traverse::<ANY, _>(isa, leaves, rays, |i, query| {
+            answer(i, query.map_or(Hit::MISS, |query| query.hit));
+        })
     }
 
     fn trace<const ANY: bool>(
         &self,
         rays: &[Ray],
         counts: &mut TraceCounts,
-        mut answer: impl FnMut(usize, Hit),
+        answer: impl FnMut(usize, Hit),
     ) {
-        let (isa, leaves) = (self.isa, &*self.leaves);
-        let work = self.bvh.traverse::<ANY, _>(isa, leaves, rays, |i, query| {
-            answer(i, query.map_or(Hit::MISS, |query| query.hit));
-        });
+        let work = self.trace_shapes::<ANY>(self.isa, rays, answer);
         counts.rays += rays.len() as u64;
         counts.box_tests += work.nodes * 8;
         counts.primitive_tests += work.blocks * BLOCK as u64;

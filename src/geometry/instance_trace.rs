@@ -3,6 +3,9 @@ use super::{Hit, Instances, TraceCounts};
 use crate::bvh::{BLOCK, Leaves, SlabRay, Work};
 use crate::math::{Isa, Ray};
 
+/// Batches up to this size are traced an instance of a ray at a time.
+const FEW_RAYS: usize = 4;
+
 /// The hierarchy over the instances as rays see it.
 #[derive(Clone, Copy, Debug)]
 struct Walk<'a> {
@@ -56,52 +59,62 @@ impl Instances {
         isa: Isa,
         rays: &[Ray],
         counts: &mut TraceCounts,
-        mut met: impl FnMut(usize, Hit),
+        met: impl FnMut(usize, Hit),
     ) {
+        let work = if rays.len() <= FEW_RAYS {
+            self.walk::<ANY>(isa, rays, met)
+        } else {
+            self.trace_batch::<ANY>(isa, rays, met)
+        };
+        counts.box_tests += work.nodes * 8;
+        counts.primitive_tests += work.blocks * BLOCK as u64;
+    }
+
+    /// The same, an instance of a ray at a time; returns the work, in which boxes of instances count
+    /// as primitives.
+    pub(super) fn walk<const ANY: bool>(
+        &self,
+        isa: Isa,
+        rays: &[Ray],
+        mut met: impl FnMut(usize, Hit),
+    ) -> Work {
         let walk = Walk {
             instances: self,
             isa,
         };
         let mut inside = Work::default();
         let top = self.bvh().traverse::<ANY, _>(isa, &walk, rays, |i, query| {
-            if let Some(query) = query {
-                inside.nodes += query.work.nodes;
-                inside.blocks += query.work.blocks;
-                if !query.hit.is_miss() {
-                    met(i, query.hit);
-                }
+            let Some(query) = query else { return };
+            inside.nodes += query.work.nodes;
+            inside.blocks += query.work.blocks;
+            if !query.hit.is_miss() {
+                met(i, query.hit);
             }
         });
-        counts.box_tests += (top.nodes + inside.nodes) * 8;
-        counts.primitive_tests += inside.blocks * BLOCK as u64;
-    }
-}
-
-impl Walk<'_> {
-    /// Meets one instance.
-    ///
-    /// The result depends on the ray and the instance alone, as with a primitive: a hit counts only
-    /// if the ray meets the box of the instance, and lies no nearer than that box.
-    fn meet<const ANY: bool>(&self, number: usize, ray: (&Ray, &SlabRay), query: &mut Query) {
-        let (ray, slab) = ray;
-        let Some(front) = slab.enter(&self.instances.boxes()[number]) else {
-            return;
-        };
-        if front > query.hit.t || front >= slab.t_max() {
-            return;
+        Work {
+            nodes: top.nodes + inside.nodes,
+            blocks: top.blocks + inside.blocks,
         }
-        let instance = &self.instances.list()[number];
-        // A hit at the same parameter may have the smaller id.
-        let t_max = ray.t_max.min(query.hit.t.next_up());
-        let place = instance.placement();
-        let inside = place.ray_to_object(ray, t_max);
-        let (hit, work) = instance.mesh().trace_one::<ANY>(self.isa, &inside);
-        query.work.nodes += work.nodes;
-        query.work.blocks += work.blocks;
+    }
+
+    /// `ray` in the space of the mesh of instance `number`, as far as a hit there may be better than
+    /// `best`. A hit at the same parameter may have the smaller id.
+    #[inline]
+    pub(super) fn ray_inside(&self, number: usize, ray: &Ray, best: &Hit) -> Ray {
+        let t_max = ray.t_max.min(best.t.next_up());
+        let place = self.list()[number].placement();
+        place.ray_to_object(ray, t_max)
+    }
+
+    /// Takes the hit with the mesh of instance `number`, whose box the ray enters at `front`, if it
+    /// is better than the best so far.
+    #[inline]
+    pub(super) fn take(&self, (number, front): (usize, f32), hit: &Hit, best: &mut Hit) {
         if hit.is_miss() {
             return;
         }
-        let (b1, b2) = if place.is_mirrored() {
+        let instance = &self.list()[number];
+        let (b1, b2) = if instance.placement().is_mirrored() {
             (hit.b2, hit.b1)
         } else {
             (hit.b1, hit.b2)
@@ -112,10 +125,39 @@ impl Walk<'_> {
             b1,
             b2,
         };
-        let best = &query.hit;
         if hit.t < best.t || (hit.t == best.t && hit.primitive < best.primitive) {
-            query.hit = hit;
+            *best = hit;
         }
+    }
+
+    /// The ray parameter at which a ray enters the box of instance `number`; `None` if it meets
+    /// nothing there.
+    #[inline]
+    pub(super) fn front(&self, number: usize, slab: &SlabRay) -> Option<f32> {
+        slab.enter(&self.boxes()[number])
+            .filter(|front| *front < slab.t_max())
+    }
+}
+
+impl Walk<'_> {
+    /// Meets one instance.
+    ///
+    /// The result depends on the ray and the instance alone, as with a primitive: a hit counts only
+    /// if the ray meets the box of the instance, and lies no nearer than that box.
+    fn meet<const ANY: bool>(&self, number: usize, ray: (&Ray, &SlabRay), query: &mut Query) {
+        let instances = self.instances;
+        let front = instances.front(number, ray.1);
+        let Some(front) = front.filter(|front| *front <= query.hit.t) else {
+            return;
+        };
+        let inside = [instances.ray_inside(number, ray.0, &query.hit)];
+        let mesh = instances.list()[number].mesh();
+        let best = &mut query.hit;
+        let work = mesh.trace_shapes::<ANY>(self.isa, &inside, |_, hit| {
+            instances.take((number, front), &hit, best);
+        });
+        query.work.nodes += work.nodes;
+        query.work.blocks += work.blocks;
     }
 }
 

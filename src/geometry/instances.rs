@@ -1,4 +1,4 @@
-use std::collections::HashSet;
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use serde::Serialize;
@@ -15,6 +15,10 @@ const FARTHEST_ORIGIN: f32 = 16.0;
 #[derive(Clone, Debug)]
 pub struct Instances {
     list: Vec<Instance>,
+    /// The meshes, each once, in the order of their first instances.
+    meshes: Vec<Arc<Aggregate>>,
+    /// For each instance the place of its mesh in `meshes`.
+    mesh_of: Vec<u32>,
     /// The box of each instance, as it stands in the hierarchy.
     boxes: Vec<Aabb>,
     bvh: Bvh,
@@ -60,7 +64,13 @@ impl Instances {
     pub(super) fn new(beside: &Aggregate, placed: Vec<(Arc<Aggregate>, Placement)>) -> Self {
         let mut end = u32::try_from(beside.shapes().len()).expect("the build checked the number");
         let mut list = Vec::with_capacity(placed.len());
+        let (mut meshes, mut mesh_of) = (Vec::new(), Vec::with_capacity(placed.len()));
+        let mut known = HashMap::new();
         for (mesh, placement) in placed {
+            mesh_of.push(*known.entry(Arc::as_ptr(&mesh)).or_insert_with(|| {
+                meshes.push(Arc::clone(&mesh));
+                meshes.len() as u32 - 1
+            }));
             assert!(
                 mesh.instances().is_none() && mesh.shapes().spheres.is_empty(),
                 "an instance places triangles"
@@ -85,6 +95,8 @@ impl Instances {
         Self {
             boxes: boxes.into_iter().map(padded).collect(),
             list,
+            meshes,
+            mesh_of,
             bvh,
             blocks,
             end,
@@ -129,18 +141,20 @@ impl Instances {
     }
 
     /// The meshes, each once, in the order of their first instances.
-    pub fn meshes(&self) -> Vec<&Arc<Aggregate>> {
-        let mut seen = HashSet::new();
-        let meshes = self.list.iter().map(Instance::mesh);
-        meshes
-            .filter(|mesh| seen.insert(Arc::as_ptr(mesh)))
-            .collect()
+    pub fn meshes(&self) -> &[Arc<Aggregate>] {
+        &self.meshes
+    }
+
+    /// The place of the mesh of instance `number` in [`Self::meshes`].
+    pub(super) fn mesh_of(&self, number: usize) -> u32 {
+        self.mesh_of[number]
     }
 
     /// What they share, and what that takes.
     pub(super) fn stats(&self) -> InstanceStats {
-        let meshes = self.meshes();
+        let meshes = &self.meshes;
         let own = size_of_val(self.list.as_slice())
+            + size_of_val(self.mesh_of.as_slice())
             + size_of_val(self.boxes.as_slice())
             + size_of_val(self.blocks.as_slice())
             + self.bvh.bytes();

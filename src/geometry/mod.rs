@@ -7,6 +7,7 @@ mod block;
 mod departure;
 mod hit;
 mod instance;
+mod instance_batch;
 mod instance_trace;
 mod instances;
 mod leaf;

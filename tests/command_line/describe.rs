@@ -2,6 +2,7 @@
 
 use serde_json::Value;
 
+use crate::collada_text::{VERTEX, document, square};
 use crate::{folder_with, run};
 
 #[test]
@@ -36,4 +37,31 @@ fn built_in_scenes_need_no_file() {
         assert!(run(&folder, &format!("info {name}")).starts_with(name));
     }
     run(&folder, "render lights -o a.png --size 8x6 --spp 1");
+}
+
+#[test]
+fn info_tells_what_instances_share() {
+    let folder = folder_with(&[]);
+    let triangles = ["0 1 2", "0 2 3"].repeat(500).join(" ");
+    let primitives = format!("<triangles count=\"1000\">{VERTEX}<p>{triangles}</p></triangles>");
+    let node = |i: usize| {
+        format!(
+            "<node id=\"n{i}\"><translate>{i} 0 0</translate>\
+             <instance_geometry url=\"#g\"/></node>"
+        )
+    };
+    let nodes: String = (0..300).map(node).collect();
+    let text = document(&square(&primitives), &nodes);
+    std::fs::write(folder.path().join("copies.dae"), text).expect("a file");
+    let text = run(&folder, "info copies.dae");
+    let line = "instances: 300 of 1 shared meshes, 1000 triangles that rays meet as 300000, ";
+    assert!(text.contains(line), "{text}");
+    let json: Value = serde_json::from_str(&run(&folder, "info copies.dae --json")).unwrap();
+    assert_eq!(json["primitives"], 300_000);
+    let shared = &json["instancing"];
+    assert_eq!(shared["instances"], 300);
+    assert_eq!(shared["meshes"], 1);
+    assert_eq!(shared["unique_triangles"], 1_000);
+    assert_eq!(shared["virtual_triangles"], 300_000);
+    assert!(shared["bytes"].as_u64().expect("a number") < 1_000_000);
 }
