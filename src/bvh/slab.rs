@@ -42,7 +42,7 @@ fn padding(extent: f32, largest: f32) -> f32 {
 
 /// The same as [`padded`] for four boxes, a lane each: minimum and maximum per axis.
 #[inline(always)]
-fn padded_four(boxes: &mut [[Vec4; 2]; 3]) {
+pub fn padded_four(boxes: &mut [[Vec4; 2]; 3]) {
     let [[x0, x1], [y0, y1], [z0, z1]] = *boxes;
     let extent = (x1 - x0).max(y1 - y0).max(z1 - z0);
     let largest = |lo: Vec4, hi: Vec4| lo.abs().max(hi.abs());

@@ -1,4 +1,5 @@
-use super::leaves::{Leaves, Work};
+use super::leaves::{Leaves, PacketLeaves, Work};
+use super::packet::Packets;
 use super::simd::dispatch;
 use super::single::Single;
 use super::stream::Stream;
@@ -43,5 +44,36 @@ impl Bvh {
                 answer,
             },
         )
+    }
+
+    /// The same as [`Self::traverse`] for closest hits and rays of which every sixteen in a row take
+    /// nearly the same way.
+    pub fn traverse_coherent<L: PacketLeaves>(
+        &self,
+        isa: Isa,
+        leaves: &L,
+        rays: &[Ray],
+        mut answer: impl FnMut(usize, Option<&L::Query>),
+    ) -> Work {
+        if self.nodes().is_empty() {
+            return self.traverse::<false, L>(isa, leaves, rays, answer);
+        }
+        let mut rest = Vec::new();
+        let packets = Packets {
+            bvh: self,
+            leaves,
+            rays,
+            answer: &mut answer,
+            rest: &mut rest,
+        };
+        let work = dispatch(isa, packets);
+        let single: Vec<_> = rest.iter().map(|&i| rays[i as usize]).collect();
+        let more = self.traverse::<false, L>(isa, leaves, &single, |i, query| {
+            answer(rest[i] as usize, query);
+        });
+        Work {
+            nodes: work.nodes + more.nodes,
+            blocks: work.blocks + more.blocks,
+        }
     }
 }

@@ -2,10 +2,10 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use super::block::{Block, ID_LIMIT};
-use super::leaf::{LeafOrder, boxes};
+use super::leaf::{LeafOrder, Query, boxes};
 use super::refine::refine;
 use super::{Hit, Shapes};
-use crate::bvh::{BLOCK, Bvh, BvhSettings, BvhStats, NodeId};
+use crate::bvh::{BLOCK, Bvh, BvhSettings, BvhStats, NodeId, Work};
 use crate::math::{Isa, Ray};
 
 /// Work done by traversal.
@@ -17,6 +17,14 @@ pub struct TraceCounts {
     pub box_tests: u64,
     /// Primitives tested; a block counts four, whether or not it is full.
     pub primitive_tests: u64,
+}
+
+impl TraceCounts {
+    fn add(&mut self, rays: &[Ray], work: Work) {
+        self.rays += rays.len() as u64;
+        self.box_tests += work.nodes * 8;
+        self.primitive_tests += work.blocks * BLOCK as u64;
+    }
 }
 
 /// Shapes under a bounding volume hierarchy: the batch tracing interface.
@@ -112,6 +120,22 @@ impl Aggregate {
         self.trace::<false>(rays, counts, |i, hit| hits[i] = hit);
     }
 
+    /// The same as [`Self::closest_hit`], faster if every sixteen rays in a row (the first sixteen, the
+    /// next, and so on) take nearly the same way: those of 4 x 4 or 8 x 2 pixels, or sixteen samples
+    /// of a few pixels. Best of all if they start at one point.
+    ///
+    /// # Panics
+    /// When the slices differ in length.
+    pub fn closest_hit_coherent(&self, rays: &[Ray], hits: &mut [Hit], counts: &mut TraceCounts) {
+        assert_eq!(rays.len(), hits.len());
+        let (isa, leaves) = (self.isa, &self.leaves);
+        let answer = |i: usize, query: Option<&Query>| {
+            hits[i] = query.map_or(Hit::MISS, |query| query.hit);
+        };
+        let work = self.bvh.traverse_coherent(isa, leaves, rays, answer);
+        counts.add(rays, work);
+    }
+
     /// Writes for each ray whether anything lies on it.
     ///
     /// # Panics
@@ -138,8 +162,6 @@ impl Aggregate {
         let work = self.bvh.traverse::<ANY, _>(isa, leaves, rays, |i, query| {
             answer(i, query.map_or(Hit::MISS, |query| query.hit));
         });
-        counts.rays += rays.len() as u64;
-        counts.box_tests += work.nodes * 8;
-        counts.primitive_tests += work.blocks * BLOCK as u64;
+        counts.add(rays, work);
     }
 }

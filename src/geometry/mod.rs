@@ -7,6 +7,8 @@ mod departure;
 mod hit;
 mod leaf;
 mod mesh;
+mod packet;
+mod packet_leaf;
 mod refine;
 mod shapes;
 mod sphere;
