@@ -1,4 +1,4 @@
-use super::packet::{PACKET, PacketRays, PerRay};
+use super::packet::{PacketRays, PerRay};
 use super::simd::Lanes;
 use super::slab::SlabRay;
 use crate::math::Ray;
@@ -46,22 +46,16 @@ pub trait PacketLeaves: Leaves {
     fn visit_packet<V: Lanes, const SHARED: bool>(
         &self,
         block: u32,
-        rays: (&[Ray; PACKET], &PacketRays),
+        rays: (&[Ray], &PacketRays),
         packet: &mut Self::Packet,
         active: u32,
     ) -> u64;
 
+    /// Lets ray `i` want nothing more: its limit becomes negative infinity.
+    fn drop_ray(packet: &mut Self::Packet, i: usize);
+
     /// The query of ray `i` by itself.
     fn of_packet(&self, packet: &Self::Packet, i: usize) -> Self::Query;
-
-    /// Puts the best hit of ray `i` back.
-    fn to_packet(
-        &self,
-        rays: &PacketRays,
-        query: &Self::Query,
-        packet: &mut Self::Packet,
-        i: usize,
-    );
 }
 
 /// Work done by traversal.

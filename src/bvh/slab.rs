@@ -133,7 +133,7 @@ impl SlabRay {
             (boxes[axis][side & 1] - Vec4::splat(self.origin[axis]))
                 * Vec4::splat(self.inverse[axis])
         };
-        let [x, y, z] = [0, 1, 2].map(|axis| self.near_side(axis));
+        let [x, y, z] = [self.near_side(0), self.near_side(1), self.near_side(2)];
         let near = t(0, x)
             .max(t(1, y))
             .max(t(2, z).max(Vec4::splat(self.t_min())));

@@ -120,9 +120,11 @@ impl Aggregate {
         self.trace::<false>(rays, counts, |i, hit| hits[i] = hit);
     }
 
-    /// The same as [`Self::closest_hit`], faster if every sixteen rays in a row (the first sixteen, the
-    /// next, and so on) take nearly the same way: those of 4 x 4 or 8 x 2 pixels, or sixteen samples
-    /// of a few pixels. Best of all if they start at one point.
+    /// The same as [`Self::closest_hit`], two to four times as fast if every 32 rays in a row (the first
+    /// 32, the next, and so on) take nearly the same way: those through 8 x 4 pixels, or several
+    /// samples of fewer pixels. Best of all if they start at one point. Rays that part go on one by
+    /// one; rays that never agreed in the signs and the longest axis of their directions cost a little
+    /// more than there.
     ///
     /// # Panics
     /// When the slices differ in length.

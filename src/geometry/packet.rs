@@ -62,15 +62,21 @@ impl Planes {
     #[inline(always)]
     pub(super) fn new(block: &Block, axes: [u8; 3], corners: &Corners) -> Self {
         let normal = block.normals(axes);
-        let first = corners[0].map(Vec4::from_array);
-        let distance = normal[0] * first[0] + normal[1] * first[1] + normal[2] * first[2];
+        let first = |axis: usize| Vec4::from_array(corners[0][axis]);
+        let distance = normal[0] * first(0) + normal[1] * first(1) + normal[2] * first(2);
         let mut bounds = block.bounds();
         padded_four(&mut bounds);
-        Self {
-            normal: normal.map(|n| n.to_array()),
+        let mut out = Self {
+            normal: [[0.0; BLOCK]; 3],
             distance: distance.to_array(),
-            bounds: bounds.map(|sides| sides.map(|side| side.to_array())),
+            bounds: [[[0.0; BLOCK]; 2]; 3],
+        };
+        // Without closures over arrays: those are not always inlined.
+        for axis in 0..3 {
+            out.normal[axis] = normal[axis].to_array();
+            out.bounds[axis] = [bounds[axis][0].to_array(), bounds[axis][1].to_array()];
         }
+        out
     }
 }
 
@@ -169,7 +175,11 @@ impl Packet {
         edges: &Edges<V>,
         (triangle, group): (usize, usize),
     ) -> [V; 3] {
-        let normal = [0, 1, 2].map(|axis| V::splat(planes.normal[axis][triangle]));
+        let normal = [
+            V::splat(planes.normal[0][triangle]),
+            V::splat(planes.normal[1][triangle]),
+            V::splat(planes.normal[2][triangle]),
+        ];
         let distance = if SHARED {
             V::splat(planes.distance[triangle])
         } else {
@@ -203,9 +213,7 @@ impl Packet {
         if V::bits(possible) == 0 {
             return;
         }
-        let side = |axis: usize, side: usize| planes.bounds[axis][side][triangle];
-        let bounds = [0, 1, 2].map(|axis| [side(axis, 0), side(axis, 1)]);
-        let (front, meets) = rays.enter::<V>(bounds, group);
+        let (front, meets) = rays.enter::<V>(&planes.bounds, triangle, group);
         let t = t.max(front);
         let met = possible & meets & t.lt(t_max);
         self.take([t, b1, b2], met, primitive, group);
@@ -285,15 +293,21 @@ impl Packet {
         self.primitive[group][lane] = f32::from_bits(hit.primitive);
     }
 
+    /// Lets ray `i` want nothing more.
+    #[inline(always)]
+    pub(super) fn drop_ray(&mut self, i: usize) {
+        self.limit[i / LANES % GROUPS][i % LANES] = f32::NEG_INFINITY;
+    }
+
     /// Does something with ray `i` by itself.
     pub(super) fn alone(
         &mut self,
-        (rays, prepared): (&[Ray; PACKET], &PacketRays),
+        (rays, prepared): (&[Ray], &PacketRays),
         i: usize,
         test: impl FnOnce(&mut Query, (&Ray, &SlabRay)),
     ) {
         let mut query = self.query(i);
-        test(&mut query, (&rays[i % PACKET], &prepared.slab(i)));
+        test(&mut query, (&rays[i], &prepared.slab(i)));
         self.put(prepared, i, &query);
     }
 }

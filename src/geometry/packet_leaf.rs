@@ -3,7 +3,7 @@ use glam::Vec4;
 use super::block::Block;
 use super::leaf::{LeafOrder, Query};
 use super::packet::{Corners, LANES, Packet, Planes};
-use crate::bvh::{BLOCK, GROUPS, Lanes, PACKET, PacketLeaves, PacketRays, PerRay};
+use crate::bvh::{BLOCK, GROUPS, Lanes, PacketLeaves, PacketRays, PerRay};
 use crate::math::Ray;
 
 impl PacketLeaves for LeafOrder {
@@ -23,7 +23,7 @@ impl PacketLeaves for LeafOrder {
     fn visit_packet<V: Lanes, const SHARED: bool>(
         &self,
         first: u32,
-        rays: (&[Ray; PACKET], &PacketRays),
+        rays: (&[Ray], &PacketRays),
         packet: &mut Packet,
         active: u32,
     ) -> u64 {
@@ -50,13 +50,13 @@ impl PacketLeaves for LeafOrder {
     }
 
     #[inline(always)]
-    fn of_packet(&self, packet: &Packet, i: usize) -> Query {
-        packet.query(i)
+    fn drop_ray(packet: &mut Packet, i: usize) {
+        packet.drop_ray(i);
     }
 
     #[inline(always)]
-    fn to_packet(&self, rays: &PacketRays, query: &Query, packet: &mut Packet, i: usize) {
-        packet.put(rays, i, query);
+    fn of_packet(&self, packet: &Packet, i: usize) -> Query {
+        packet.query(i)
     }
 }
 
@@ -65,7 +65,7 @@ impl Packet {
     #[inline(always)]
     fn visit<V: Lanes, const SHARED: bool>(
         &mut self,
-        rays: (&[Ray; PACKET], &PacketRays),
+        rays: (&[Ray], &PacketRays),
         block: &Block,
         active: u32,
     ) {
@@ -112,7 +112,7 @@ impl Packet {
     #[inline(never)]
     fn on_edge(
         &mut self,
-        rays: (&[Ray; PACKET], &PacketRays),
+        rays: (&[Ray], &PacketRays),
         block: &Block,
         (triangle, group): (usize, usize),
         lanes: u32,

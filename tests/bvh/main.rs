@@ -4,6 +4,7 @@
 mod degenerate;
 mod exact;
 mod oracle;
+mod packets;
 mod scenes;
 mod selfhit;
 mod structure;

@@ -1,7 +1,7 @@
 use super::super::node::{WIDTH, WideNode};
-use super::super::simd::Lanes;
+use super::super::simd::{LANES, Lanes};
 use super::super::slab::FAR_MARGIN;
-use super::rays::{GROUPS, PacketRays};
+use super::rays::{PacketRays, PerRay};
 
 /// What bounds all rays of a packet.
 #[derive(Clone, Copy, Debug)]
@@ -24,25 +24,17 @@ impl Interval {
         let mut out = Self {
             origin: [[0.0; 2]; 3],
             inverse: [[0.0; 2]; 3],
-            t_min: least(rays.t_min::<V>(0).min(rays.t_min(1))),
+            t_min: least::<V>(&rays.t_min),
         };
         for axis in 0..3 {
-            let (mut low, mut high) = (rays.origin::<V>(axis, 0), rays.origin::<V>(axis, 0));
-            let (mut least_inverse, mut most) =
-                (rays.inverse::<V>(axis, 0), rays.inverse::<V>(axis, 0));
-            for group in 1..GROUPS {
-                low = low.min(rays.origin(axis, group));
-                high = high.max(rays.origin(axis, group));
-                least_inverse = least_inverse.min(rays.inverse(axis, group));
-                most = most.max(rays.inverse(axis, group));
-            }
-            let (low, high) = (least(low), largest(high));
+            let (low, high) = ends::<V>(&rays.origin[axis]);
             out.origin[axis] = if rays.octant >> axis & 1 == 0 {
                 [high, low]
             } else {
                 [low, high]
             };
-            out.inverse[axis] = [least(least_inverse), largest(most)];
+            let (least, most) = ends::<V>(&rays.inverse[axis]);
+            out.inverse[axis] = [least, most];
         }
         out
     }
@@ -85,21 +77,35 @@ impl Interval {
     }
 }
 
-/// The least lane.
+/// The least and the largest number.
 #[inline(always)]
-pub(super) fn least<V: Lanes>(values: V) -> f32 {
-    fold(values, |a, b| if b < a { b } else { a })
+fn ends<V: Lanes>(values: &PerRay) -> (f32, f32) {
+    (least::<V>(values), largest::<V>(values))
 }
 
-/// The largest lane.
+/// The least number.
 #[inline(always)]
-pub(super) fn largest<V: Lanes>(values: V) -> f32 {
-    fold(values, |a, b| if b > a { b } else { a })
+fn least<V: Lanes>(values: &PerRay) -> f32 {
+    let mut lanes = V::load(&values[0]);
+    for group in &values[1..] {
+        lanes = lanes.min(V::load(group));
+    }
+    fold(lanes, |a, b| if b < a { b } else { a })
+}
+
+/// The largest number.
+#[inline(always)]
+pub(super) fn largest<V: Lanes>(values: &PerRay) -> f32 {
+    let mut lanes = V::load(&values[0]);
+    for group in &values[1..] {
+        lanes = lanes.max(V::load(group));
+    }
+    fold(lanes, |a, b| if b > a { b } else { a })
 }
 
 #[inline(always)]
 fn fold<V: Lanes>(values: V, better: impl Fn(f32, f32) -> f32) -> f32 {
-    let mut v = [0.0; WIDTH];
+    let mut v = [0.0; LANES];
     values.store(&mut v);
     let four = [
         better(v[0], v[4]),

@@ -1,11 +1,11 @@
-//! Packets: sixteen rays that take nearly the same way go through the tree together.
+//! Packets: thirty-two rays that take nearly the same way go through the tree together.
 //!
 //! A lane of the processor's vectors is a ray here, where it is a child of a node or a triangle for
 //! single rays; what is computed for a ray and a box or a triangle is the same. Rays that part from
 //! the others go on by themselves below the node where they do.
 
-mod few;
 mod interval;
+mod pool;
 mod rays;
 
 pub use rays::{GROUPS, PACKET, PacketRays, PerRay};
@@ -14,14 +14,21 @@ use super::leaves::{PacketLeaves, Work};
 use super::node::{LEAF, WIDTH};
 use super::octant::FAR_TO_NEAR;
 use super::simd::{Kernel, LANES, Lanes, NodeTest};
-use super::stack::Stacks;
 use super::tree::Bvh;
 use crate::math::Ray;
-use few::Few;
 use interval::{Interval, Planes, largest};
 
-/// Up to so many rays of a packet go on by themselves.
-const FEW: u32 = 4;
+use pool::{Lane, Pool, take};
+
+/// Up to so many rays leave a packet at a node with many primitives for each; fewer are no packet.
+const FEW: u32 = 9;
+
+/// Many. More (32) serve scenes better that have few triangles for each pixel, fewer (2) those that
+/// have many.
+const MANY: usize = 8;
+
+/// All rays of a packet.
+const ALL: u32 = u32::MAX >> (32 - PACKET);
 
 /// Traces packets one after the other.
 #[derive(Debug)]
@@ -48,7 +55,7 @@ struct Room<Q, P> {
     rays: PacketRays,
     packet: P,
     pending: Pending,
-    few: Few<Q>,
+    pool: Pool<Q>,
     work: Work,
 }
 
@@ -65,43 +72,85 @@ impl<L: PacketLeaves, F: FnMut(usize, Option<&L::Query>)> Kernel for Packets<'_,
                 references: vec![0; depth],
                 near: vec![[[0.0; LANES]; GROUPS]; depth],
             },
-            few: Few::new(Stacks::new(self.bvh, PACKET)),
+            pool: Pool::new(self.bvh),
             work: Work::default(),
         };
         let (packets, last) = self.rays.as_chunks::<PACKET>();
         let mut first = 0;
         for rays in packets {
-            let is_packet = room.rays.set::<N::Rays>(rays)
-                && self
-                    .leaves
-                    .set_packet::<N::Rays>(&room.rays, &mut room.packet);
-            if is_packet {
-                if room.rays.share_origin::<N::Rays>() {
-                    self.trace::<N, true>(rays, &mut room);
+            let is_whole = self.prepare::<N>(rays, &mut room);
+            let mut left = ALL;
+            while left != 0 {
+                let members = if is_whole {
+                    std::mem::take(&mut left)
                 } else {
-                    self.trace::<N, false>(rays, &mut room);
+                    self.choose::<N>((first, rays), &mut left, &mut room)
+                };
+                if members != 0 {
+                    self.trace::<N>(first, members, &mut room);
                 }
-                for i in 0..PACKET {
-                    (self.answer)(first + i, Some(&self.leaves.of_packet(&room.packet, i)));
-                }
-            } else {
-                self.rest.extend(first as u32..(first + PACKET) as u32);
             }
             first += PACKET;
         }
+        self.finish::<N>(0, &mut room);
         self.rest.extend(first as u32..(first + last.len()) as u32);
         room.work
     }
 }
 
-impl<L: PacketLeaves, F> Packets<'_, L, F> {
-    /// Traces the packet in `room`, made of `rays`. If `SHARED`, all start at one point.
+impl<L: PacketLeaves, F: FnMut(usize, Option<&L::Query>)> Packets<'_, L, F> {
+    /// Makes a packet of `rays`; false if they cannot be one.
     #[inline(always)]
-    fn trace<N: NodeTest, const SHARED: bool>(
+    fn prepare<N: NodeTest>(
         &self,
         rays: &[Ray; PACKET],
         room: &mut Room<L::Query, L::Packet>,
+    ) -> bool {
+        room.rays.set::<N::Rays>(rays)
+            && self
+                .leaves
+                .set_packet::<N::Rays>(&room.rays, &mut room.packet)
+    }
+
+    /// Makes a packet of those rays in `left` that agree with its first, and of copies of that one;
+    /// returns them. If they are too few, they and what is like them are left to others.
+    #[inline(always)]
+    fn choose<N: NodeTest>(
+        &mut self,
+        (first, rays): (usize, &[Ray; PACKET]),
+        left: &mut u32,
+        room: &mut Room<L::Query, L::Packet>,
+    ) -> u32 {
+        let leader = left.trailing_zeros() as usize % PACKET;
+        let mut chosen = [rays[leader]; PACKET];
+        let mut members = 0;
+        for i in 0..PACKET {
+            if way(&rays[i]) == way(&rays[leader]) {
+                chosen[i] = rays[i];
+                members |= 1 << i;
+            }
+        }
+        *left &= !members;
+        let others = (0..PACKET).filter(|i| members >> i & 1 == 0);
+        if members.count_ones() > FEW && self.prepare::<N>(&chosen, room) {
+            others.for_each(|i| L::drop_ray(&mut room.packet, i));
+            return members;
+        }
+        let members = (0..PACKET).filter(|i| members >> i & 1 == 1);
+        self.rest.extend(members.map(|i| (first + i) as u32));
+        0
+    }
+
+    /// Traces the packet in `room`, whose first ray has number `first`, and answers the rays in
+    /// `wanted`.
+    #[inline(always)]
+    fn trace<N: NodeTest>(
+        &mut self,
+        first: usize,
+        mut wanted: u32,
+        room: &mut Room<L::Query, L::Packet>,
     ) {
+        let shared = room.rays.share_origin::<N::Rays>();
         let interval = Interval::new::<N::Rays>(&room.rays);
         room.pending.references[0] = 0;
         room.pending.near[0] = room.rays.t_min;
@@ -114,20 +163,101 @@ impl<L: PacketLeaves, F> Packets<'_, L, F> {
             }
             let at = room.pending.references[top];
             let count = active.count_ones();
-            if count <= FEW {
-                self.part::<N>(rays, room, at, active);
+            if self.parts(at, count) {
+                if (room.pool.free() as usize) < PACKET {
+                    self.finish::<N>((pool::POOL - PACKET) as u32, room);
+                }
+                self.leave(first, active, room, (at, top));
+                wanted &= !active;
             } else if at & LEAF == 0 {
                 room.work.nodes += u64::from(count);
-                top = self.open::<N, SHARED>(room, at, &interval, top);
+                top = if shared {
+                    self.open::<N, true>(room, (at, active), &interval, top)
+                } else {
+                    self.open::<N, false>(room, (at, active), &interval, top)
+                };
             } else {
-                let blocks = self.leaves.visit_packet::<N::Rays, SHARED>(
-                    at & !LEAF,
-                    (rays, &room.rays),
-                    &mut room.packet,
-                    active,
-                );
+                let rays = (&self.rays[first..first + PACKET], &room.rays);
+                let (block, packet) = (at & !LEAF, &mut room.packet);
+                let blocks = if shared {
+                    self.leaves
+                        .visit_packet::<N::Rays, true>(block, rays, packet, active)
+                } else {
+                    self.leaves
+                        .visit_packet::<N::Rays, false>(block, rays, packet, active)
+                };
                 room.work.blocks += blocks * u64::from(count);
             }
+        }
+        let mut wanted = u64::from(wanted);
+        while wanted != 0 {
+            let i = take(&mut wanted);
+            (self.answer)(first + i, Some(&self.leaves.of_packet(&room.packet, i)));
+        }
+    }
+
+    /// Ray `i` of the packet by itself, to go on at `at`.
+    #[inline(always)]
+    fn lane(
+        &self,
+        first: usize,
+        i: usize,
+        room: &Room<L::Query, L::Packet>,
+        at: u32,
+    ) -> Lane<L::Query> {
+        Lane {
+            slab: room.rays.slab(i),
+            limit: L::limit(&room.packet)[i / LANES % GROUPS][i % LANES],
+            at,
+            top: 0,
+            ray: (first + i) as u32,
+            query: self.leaves.of_packet(&room.packet, i),
+        }
+    }
+
+    /// Whether `count` rays that meet what lies below `at` will find different ways there.
+    #[inline(always)]
+    fn parts(&self, at: u32, count: u32) -> bool {
+        count <= FEW
+            && at & LEAF == 0
+            && self.bvh.nodes()[at as usize].primitives() >= MANY * count as usize
+    }
+
+    /// Takes the rays in `leaving` out of the packet: they go on from `at`, and then with what the
+    /// packet has still to visit, below `top`.
+    #[inline(always)]
+    fn leave(
+        &mut self,
+        first: usize,
+        leaving: u32,
+        room: &mut Room<L::Query, L::Packet>,
+        (at, top): (u32, usize),
+    ) {
+        let mut left = u64::from(leaving);
+        while left != 0 {
+            let i = take(&mut left);
+            let lane = self.lane(first, i, room, at);
+            let pending = &room.pending;
+            room.pool.add(lane, |stacks, bottom| {
+                let entries = pending.references[..top].iter().zip(&pending.near);
+                entries.fold(bottom, |to, (&reference, near)| {
+                    let near = near[i / LANES % GROUPS][i % LANES];
+                    stacks.put(to, (reference, near), lane.limit)
+                })
+            });
+            L::drop_ray(&mut room.packet, i);
+        }
+    }
+
+    /// Leads the rays in the pool on until at most `keep` of them are left, and answers the others.
+    #[inline(always)]
+    fn finish<N: NodeTest>(&mut self, keep: u32, room: &mut Room<L::Query, L::Packet>) {
+        let set = (room.pool.taken(), keep);
+        let (pool, work) = (&mut room.pool, &mut room.work);
+        let mut done = pool.run::<N, L>(set, self.bvh, self.leaves, self.rays, work);
+        while done != 0 {
+            let lane = pool.remove(take(&mut done));
+            (self.answer)(lane.ray as usize, Some(&lane.query));
         }
     }
 
@@ -136,7 +266,7 @@ impl<L: PacketLeaves, F> Packets<'_, L, F> {
     fn open<N: NodeTest, const SHARED: bool>(
         &self,
         room: &mut Room<L::Query, L::Packet>,
-        at: u32,
+        (at, active): (u32, u32),
         interval: &Interval,
         mut top: usize,
     ) -> usize {
@@ -148,9 +278,8 @@ impl<L: PacketLeaves, F> Packets<'_, L, F> {
         } = room;
         let node = &self.bvh.nodes()[at as usize];
         let limit = L::limit(packet);
-        let limits: [N::Rays; GROUPS] = [N::Rays::load(&limit[0]), N::Rays::load(&limit[1])];
         let mut planes: Planes = [[[0.0; WIDTH]; 2]; 3];
-        let most = largest(limits[0].max(limits[1]));
+        let most = largest::<N::Rays>(limit);
         let met = interval.enter::<N::Rays, SHARED>(node, rays.octant, most, &mut planes);
         let mut order = FAR_TO_NEAR[rays.octant as usize % 8][met as usize % (1 << WIDTH)];
         for _ in 0..met.count_ones() {
@@ -159,8 +288,17 @@ impl<L: PacketLeaves, F> Packets<'_, L, F> {
             let entry = &mut pending.near[top];
             let mut any = 0;
             for group in 0..GROUPS {
-                let (near, meets) =
-                    enter_child::<N::Rays, SHARED>(rays, &planes, slot, group, limits[group]);
+                if active >> (LANES * group) & 0xff == 0 {
+                    entry[group] = [f32::INFINITY; LANES];
+                    continue;
+                }
+                let (near, meets) = enter_child::<N::Rays, SHARED>(
+                    rays,
+                    &planes,
+                    slot,
+                    group,
+                    N::Rays::load(&limit[group]),
+                );
                 any |= N::Rays::bits(meets);
                 N::Rays::select(meets, near, N::Rays::splat(f32::INFINITY))
                     .store(&mut entry[group]);
@@ -169,32 +307,6 @@ impl<L: PacketLeaves, F> Packets<'_, L, F> {
             top += usize::from(any != 0);
         }
         top
-    }
-
-    /// Lets the `active` rays go on by themselves from `at` on, up to the end of what lies below.
-    #[inline(always)]
-    fn part<N: NodeTest>(
-        &self,
-        rays: &[Ray; PACKET],
-        room: &mut Room<L::Query, L::Packet>,
-        at: u32,
-        active: u32,
-    ) {
-        let mut left = active;
-        room.few.clear();
-        while left != 0 {
-            let i = left.trailing_zeros() as usize % PACKET;
-            left &= left - 1;
-            let query = self.leaves.of_packet(&room.packet, i);
-            let limit = L::limit(&room.packet)[i / LANES][i % LANES];
-            room.few.push(i as u32, room.rays.slab(i), limit, query);
-        }
-        room.few
-            .run::<N, L>(self.bvh, self.leaves, (rays, at), &mut room.work);
-        for (i, query) in room.few.answers() {
-            self.leaves
-                .to_packet(&room.rays, query, &mut room.packet, i as usize);
-        }
     }
 }
 
@@ -234,4 +346,16 @@ fn enter_child<V: Lanes, const SHARED: bool>(
     let near = t(0, 0).max(t(1, 0)).max(t(2, 0).max(rays.t_min(group)));
     let far = t(0, 1).min(t(1, 1)).min(t(2, 1).min(limit));
     (near, near.le(far * V::splat(super::slab::FAR_MARGIN)))
+}
+
+/// The same for rays whose directions agree in signs and in the axis along which they are longest.
+fn way(ray: &Ray) -> u8 {
+    let [x, y, z] = ray.direction.to_array();
+    let [ax, ay, az] = [x.abs(), y.abs(), z.abs()];
+    let longest = if az > ax && az > ay {
+        2
+    } else {
+        u8::from(ay > ax)
+    };
+    longest << 3 | u8::from(z < 0.0) << 2 | u8::from(y < 0.0) << 1 | u8::from(x < 0.0)
 }

@@ -1,9 +1,10 @@
 use super::super::simd::{LANES, Lanes};
 use super::super::slab::{FAR_MARGIN, SlabRay, T_FAR};
+use super::super::tree::BLOCK;
 use crate::math::Ray;
 
 /// Groups of eight rays in a packet.
-pub const GROUPS: usize = 2;
+pub const GROUPS: usize = 4;
 
 /// Rays in a packet.
 pub const PACKET: usize = GROUPS * LANES;
@@ -58,9 +59,9 @@ impl PacketRays {
         for (group, negative) in negative.iter_mut().enumerate() {
             is_valid &= self.prepare::<V>(group, negative);
         }
-        let first = negative[0].map(|bits| bits & 1);
+        let first = [negative[0][0] & 1, negative[0][1] & 1, negative[0][2] & 1];
         self.octant = first[0] | first[1] << 1 | first[2] << 2;
-        let all = first.map(|bit| bit * 0xff);
+        let all = [first[0] * 0xff, first[1] * 0xff, first[2] * 0xff];
         is_valid && negative.iter().all(|negative| *negative == all)
     }
 
@@ -169,10 +170,15 @@ impl PacketRays {
     /// [`SlabRay::enter`] for the rays of a group and one box, which must not be empty: minimum and
     /// maximum per axis.
     #[inline(always)]
-    pub fn enter<V: Lanes>(&self, bounds: [[f32; 2]; 3], group: usize) -> (V, V::Mask) {
+    pub fn enter<V: Lanes>(
+        &self,
+        boxes: &[[[f32; BLOCK]; 2]; 3],
+        which: usize,
+        group: usize,
+    ) -> (V, V::Mask) {
         let t = |axis: usize, side: u32| {
             let side = (self.octant >> axis & 1) ^ side;
-            (V::splat(bounds[axis][side as usize]) - self.origin(axis, group))
+            (V::splat(boxes[axis][side as usize & 1][which]) - self.origin(axis, group))
                 * self.inverse(axis, group)
         };
         let near = t(0, 0).max(t(1, 0)).max(t(2, 0).max(self.t_min(group)));
