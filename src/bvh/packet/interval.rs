@@ -52,7 +52,7 @@ impl Interval {
         octant: u32,
         limit: f32,
         planes: &mut Planes,
-    ) -> u32 {
+    ) -> (V, u32) {
         let mut near = V::splat(self.t_min);
         let mut far = V::splat(limit);
         for axis in 0..3 {
@@ -73,7 +73,7 @@ impl Interval {
                 second.store(&mut planes[axis][1]);
             }
         }
-        V::bits(near.le(far * V::splat(FAR_MARGIN)))
+        (near, V::bits(near.le(far * V::splat(FAR_MARGIN))))
     }
 }
 

@@ -11,9 +11,9 @@ mod rays;
 pub use rays::{GROUPS, PACKET, PacketRays, PerRay};
 
 use super::leaves::{PacketLeaves, Work};
-use super::node::{LEAF, WIDTH};
+use super::node::{LEAF, WIDTH, WideNode};
 use super::octant::FAR_TO_NEAR;
-use super::simd::{Kernel, LANES, Lanes, NodeTest};
+use super::simd::{Kernel, LANES, Lanes, NodeTest, prefetch};
 use super::tree::Bvh;
 use crate::math::Ray;
 use interval::{Interval, Planes, largest};
@@ -280,11 +280,11 @@ impl<L: PacketLeaves, F: FnMut(usize, Option<&L::Query>)> Packets<'_, L, F> {
         let limit = L::limit(packet);
         let mut planes: Planes = [[[0.0; WIDTH]; 2]; 3];
         let most = largest::<N::Rays>(limit);
-        let met = interval.enter::<N::Rays, SHARED>(node, rays.octant, most, &mut planes);
-        let mut order = FAR_TO_NEAR[rays.octant as usize % 8][met as usize % (1 << WIDTH)];
-        for _ in 0..met.count_ones() {
-            let slot = order as usize % WIDTH;
-            order >>= 8;
+        let (near, met) = interval.enter::<N::Rays, SHARED>(node, rays.octant, most, &mut planes);
+        let octant_order = FAR_TO_NEAR[rays.octant as usize % 8][met as usize % (1 << WIDTH)];
+        let order = far_to_near(octant_order, met.count_ones() as usize, near);
+        for &slot in &order[..met.count_ones() as usize] {
+            let slot = slot as usize % WIDTH;
             let entry = &mut pending.near[top];
             let mut any = 0;
             for group in 0..GROUPS {
@@ -303,7 +303,14 @@ impl<L: PacketLeaves, F: FnMut(usize, Option<&L::Query>)> Packets<'_, L, F> {
                 N::Rays::select(meets, near, N::Rays::splat(f32::INFINITY))
                     .store(&mut entry[group]);
             }
-            pending.references[top] = node.children[slot];
+            let child = node.children[slot];
+            pending.references[top] = child;
+            let (memory, size): (*const u8, usize) = if child & LEAF != 0 {
+                (self.leaves.blocks().as_ptr().cast(), size_of::<L::Block>())
+            } else {
+                (self.bvh.nodes().as_ptr().cast(), size_of::<WideNode>())
+            };
+            prefetch(memory.wrapping_add((child & !LEAF) as usize * size), 4);
             top += usize::from(any != 0);
         }
         top
@@ -323,6 +330,25 @@ impl<Q, P> Room<Q, P> {
         }
         active
     }
+}
+
+/// The first `count` slots of `order` by falling `near`; at equal ones as they are.
+#[inline(always)]
+fn far_to_near<V: Lanes>(order: u64, count: usize, near: V) -> [u8; WIDTH] {
+    let mut distance = [0.0; WIDTH];
+    near.store(&mut distance);
+    let mut order = order.to_le_bytes();
+    let at = |slot: u8| distance[slot as usize % WIDTH];
+    for i in 1..count {
+        let slot = order[i % WIDTH];
+        let mut to = i;
+        while to > 0 && at(order[(to - 1) % WIDTH]) < at(slot) {
+            order[to % WIDTH] = order[(to - 1) % WIDTH];
+            to -= 1;
+        }
+        order[to % WIDTH] = slot;
+    }
+    order
 }
 
 /// [`super::SlabRay::enter`] for the rays of a group and the child in `slot`.
