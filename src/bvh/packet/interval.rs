@@ -55,7 +55,7 @@ impl Interval {
     ) -> (V, u32) {
         let mut near = V::splat(self.t_min);
         let mut far = V::splat(limit);
-        for axis in 0..3 {
+        for (axis, planes) in planes.iter_mut().enumerate() {
             let side = (octant >> axis & 1) as usize;
             let least = V::splat(self.inverse[axis][0]);
             let most = V::splat(self.inverse[axis][1]);
@@ -66,11 +66,11 @@ impl Interval {
             near = near.max((a * least).min(a * most));
             far = far.min((b * least).max(b * most));
             if SHARED {
-                a.store(&mut planes[axis][0]);
-                b.store(&mut planes[axis][1]);
+                a.store(&mut planes[0]);
+                b.store(&mut planes[1]);
             } else {
-                first.store(&mut planes[axis][0]);
-                second.store(&mut planes[axis][1]);
+                first.store(&mut planes[0]);
+                second.store(&mut planes[1]);
             }
         }
         (near, V::bits(near.le(far * V::splat(FAR_MARGIN))))

@@ -5,19 +5,19 @@
 //! the others go on by themselves below the node where they do.
 
 mod interval;
+mod pending;
 mod pool;
 mod rays;
 
 pub use rays::{GROUPS, PACKET, PacketRays, PerRay};
 
 use super::leaves::{PacketLeaves, Work};
-use super::node::{LEAF, WIDTH, WideNode};
-use super::octant::FAR_TO_NEAR;
-use super::simd::{Kernel, LANES, Lanes, NodeTest, prefetch};
+use super::node::{LEAF, WideNode};
+use super::simd::{Kernel, LANES, NodeTest, prefetch};
 use super::tree::Bvh;
 use crate::math::Ray;
-use interval::{Interval, Planes, largest};
-
+use interval::Interval;
+use pending::Pending;
 use pool::{Lane, Pool, take};
 
 /// Up to so many rays leave a packet at a node with many primitives for each; fewer are no packet.
@@ -42,14 +42,6 @@ pub(super) struct Packets<'a, L, F> {
     pub(super) rest: &'a mut Vec<u32>,
 }
 
-/// What a packet has still to visit, the nearest last.
-#[derive(Debug)]
-struct Pending {
-    references: Vec<u32>,
-    /// Where each ray enters; infinite for those that do not.
-    near: Vec<PerRay>,
-}
-
 /// All that one thread needs to trace packets.
 struct Room<Q, P> {
     rays: PacketRays,
@@ -64,14 +56,10 @@ impl<L: PacketLeaves, F: FnMut(usize, Option<&L::Query>)> Kernel for Packets<'_,
 
     #[inline(always)]
     fn run<N: NodeTest>(mut self) -> Work {
-        let depth = (WIDTH - 1) * self.bvh.wide_depth() + 1 + WIDTH;
         let mut room = Room {
             rays: PacketRays::EMPTY,
             packet: L::Packet::default(),
-            pending: Pending {
-                references: vec![0; depth],
-                near: vec![[[0.0; LANES]; GROUPS]; depth],
-            },
+            pending: Pending::new(self.bvh.wide_depth()),
             pool: Pool::new(self.bvh),
             work: Work::default(),
         };
@@ -157,7 +145,8 @@ impl<L: PacketLeaves, F: FnMut(usize, Option<&L::Query>)> Packets<'_, L, F> {
         let mut top = 1;
         while top > 0 {
             top -= 1;
-            let active = room.active::<N::Rays>(L::limit(&room.packet), top);
+            let limit = L::limit(&room.packet);
+            let active = room.pending.active::<N::Rays>(limit, top);
             if active == 0 {
                 continue;
             }
@@ -171,10 +160,13 @@ impl<L: PacketLeaves, F: FnMut(usize, Option<&L::Query>)> Packets<'_, L, F> {
                 wanted &= !active;
             } else if at & LEAF == 0 {
                 room.work.nodes += u64::from(count);
+                let (node, pending) = (&self.bvh.nodes()[at as usize], &mut room.pending);
+                let packet = (&room.rays, &interval, limit, active);
+                let found = |child| self.prefetch(child);
                 top = if shared {
-                    self.open::<N, true>(room, (at, active), &interval, top)
+                    pending.open::<N::Rays, true>(top, node, packet, found)
                 } else {
-                    self.open::<N, false>(room, (at, active), &interval, top)
+                    pending.open::<N::Rays, false>(top, node, packet, found)
                 };
             } else {
                 let rays = (&self.rays[first..first + PACKET], &room.rays);
@@ -213,6 +205,17 @@ impl<L: PacketLeaves, F: FnMut(usize, Option<&L::Query>)> Packets<'_, L, F> {
             ray: (first + i) as u32,
             query: self.leaves.of_packet(&room.packet, i),
         }
+    }
+
+    /// Asks for the memory of a node or leaf.
+    #[inline(always)]
+    fn prefetch(&self, at: u32) {
+        let (memory, size): (*const u8, usize) = if at & LEAF != 0 {
+            (self.leaves.blocks().as_ptr().cast(), size_of::<L::Block>())
+        } else {
+            (self.bvh.nodes().as_ptr().cast(), size_of::<WideNode>())
+        };
+        prefetch(memory.wrapping_add((at & !LEAF) as usize * size), 4);
     }
 
     /// Whether `count` rays that meet what lies below `at` will find different ways there.
@@ -260,121 +263,9 @@ impl<L: PacketLeaves, F: FnMut(usize, Option<&L::Query>)> Packets<'_, L, F> {
             (self.answer)(lane.ray as usize, Some(&lane.query));
         }
     }
-
-    /// Puts the children of node `at` that some ray meets on the stack; returns the new top.
-    #[inline(always)]
-    fn open<N: NodeTest, const SHARED: bool>(
-        &self,
-        room: &mut Room<L::Query, L::Packet>,
-        (at, active): (u32, u32),
-        interval: &Interval,
-        mut top: usize,
-    ) -> usize {
-        let Room {
-            rays,
-            packet,
-            pending,
-            ..
-        } = room;
-        let node = &self.bvh.nodes()[at as usize];
-        let limit = L::limit(packet);
-        let mut planes: Planes = [[[0.0; WIDTH]; 2]; 3];
-        let most = largest::<N::Rays>(limit);
-        let (near, met) = interval.enter::<N::Rays, SHARED>(node, rays.octant, most, &mut planes);
-        let octant_order = FAR_TO_NEAR[rays.octant as usize % 8][met as usize % (1 << WIDTH)];
-        let order = far_to_near(octant_order, met.count_ones() as usize, near);
-        for &slot in &order[..met.count_ones() as usize] {
-            let slot = slot as usize % WIDTH;
-            let entry = &mut pending.near[top];
-            let mut any = 0;
-            for group in 0..GROUPS {
-                if active >> (LANES * group) & 0xff == 0 {
-                    entry[group] = [f32::INFINITY; LANES];
-                    continue;
-                }
-                let (near, meets) = enter_child::<N::Rays, SHARED>(
-                    rays,
-                    &planes,
-                    slot,
-                    group,
-                    N::Rays::load(&limit[group]),
-                );
-                any |= N::Rays::bits(meets);
-                N::Rays::select(meets, near, N::Rays::splat(f32::INFINITY))
-                    .store(&mut entry[group]);
-            }
-            let child = node.children[slot];
-            pending.references[top] = child;
-            let (memory, size): (*const u8, usize) = if child & LEAF != 0 {
-                (self.leaves.blocks().as_ptr().cast(), size_of::<L::Block>())
-            } else {
-                (self.bvh.nodes().as_ptr().cast(), size_of::<WideNode>())
-            };
-            prefetch(memory.wrapping_add((child & !LEAF) as usize * size), 4);
-            top += usize::from(any != 0);
-        }
-        top
-    }
 }
 
-impl<Q, P> Room<Q, P> {
-    /// The rays that still want the entry `top`.
-    #[inline(always)]
-    fn active<V: Lanes>(&self, limit: &PerRay, top: usize) -> u32 {
-        let near = &self.pending.near[top];
-        let mut active = 0;
-        for group in 0..GROUPS {
-            // Equality stays in: a hit at the same parameter may have the smaller id.
-            let wants = V::load(&near[group]).le(V::load(&limit[group]));
-            active |= V::bits(wants) << (LANES * group);
-        }
-        active
-    }
-}
-
-/// The first `count` slots of `order` by falling `near`; at equal ones as they are.
-#[inline(always)]
-fn far_to_near<V: Lanes>(order: u64, count: usize, near: V) -> [u8; WIDTH] {
-    let mut distance = [0.0; WIDTH];
-    near.store(&mut distance);
-    let mut order = order.to_le_bytes();
-    let at = |slot: u8| distance[slot as usize % WIDTH];
-    for i in 1..count {
-        let slot = order[i % WIDTH];
-        let mut to = i;
-        while to > 0 && at(order[(to - 1) % WIDTH]) < at(slot) {
-            order[to % WIDTH] = order[(to - 1) % WIDTH];
-            to -= 1;
-        }
-        order[to % WIDTH] = slot;
-    }
-    order
-}
-
-/// [`super::SlabRay::enter`] for the rays of a group and the child in `slot`.
-#[inline(always)]
-fn enter_child<V: Lanes, const SHARED: bool>(
-    rays: &PacketRays,
-    planes: &Planes,
-    slot: usize,
-    group: usize,
-    limit: V,
-) -> (V, V::Mask) {
-    let t = |axis: usize, side: usize| {
-        let plane = V::splat(planes[axis][side][slot]);
-        let distance = if SHARED {
-            plane
-        } else {
-            plane - rays.origin(axis, group)
-        };
-        distance * rays.inverse(axis, group)
-    };
-    let near = t(0, 0).max(t(1, 0)).max(t(2, 0).max(rays.t_min(group)));
-    let far = t(0, 1).min(t(1, 1)).min(t(2, 1).min(limit));
-    (near, near.le(far * V::splat(super::slab::FAR_MARGIN)))
-}
-
-/// The same for rays whose directions agree in signs and in the axis along which they are longest.
+/// The same number for rays whose directions agree in signs and in the axis along which they are longest.
 fn way(ray: &Ray) -> u8 {
     let [x, y, z] = ray.direction.to_array();
     let [ax, ay, az] = [x.abs(), y.abs(), z.abs()];

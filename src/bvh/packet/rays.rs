@@ -74,7 +74,7 @@ impl PacketRays {
         // Zero, or NaN if anything is infinite or NaN.
         let mut nothing = t_min * zero;
         let mut is_zero = V::eq(zero, zero);
-        for axis in 0..3 {
+        for (axis, negative) in negative.iter_mut().enumerate() {
             let direction = V::load(&self.direction[axis][group]);
             nothing = nothing + self.origin::<V>(axis, group) * zero + direction * zero;
             is_zero = is_zero & direction.eq(zero);
@@ -84,7 +84,7 @@ impl PacketRays {
                 .min(V::splat(f32::MAX))
                 .max(V::splat(-f32::MAX));
             inverse.store(&mut self.inverse[axis][group]);
-            negative[axis] = V::bits(direction.lt(zero));
+            *negative = V::bits(direction.lt(zero));
         }
         let is_valid = V::bits(nothing.eq(zero) & t_min.lt(t_max));
         t_max.min(V::splat(T_FAR)).store(&mut self.t_max[group]);
