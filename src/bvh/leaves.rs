@@ -1,3 +1,5 @@
+use super::packet::{PacketRays, PerRay};
+use super::simd::Lanes;
 use super::slab::SlabRay;
 use crate::math::Ray;
 
@@ -26,6 +28,34 @@ pub trait Leaves: Sync {
 
     /// All blocks, so that they can be fetched before they are visited.
     fn blocks(&self) -> &[Self::Block];
+}
+
+/// Leaves that can be tested with a whole packet. Every answer is the one of [`Leaves`], bit for bit.
+pub trait PacketLeaves: Leaves {
+    /// The queries of the rays of a packet, side by side.
+    type Packet: Default;
+
+    /// Prepares the rays of a packet; false if they must be traced one by one.
+    fn set_packet<V: Lanes>(&self, rays: &PacketRays, packet: &mut Self::Packet) -> bool;
+
+    /// For each ray the parameter beyond which nothing matters any more.
+    fn limit(packet: &Self::Packet) -> &PerRay;
+
+    /// Tests the leaf that begins with `block`, at least for the rays with a bit in `active`. If
+    /// `SHARED`, all rays start at one point. Returns the number of blocks.
+    fn visit_packet<V: Lanes, const SHARED: bool>(
+        &self,
+        block: u32,
+        rays: (&[Ray], &PacketRays),
+        packet: &mut Self::Packet,
+        active: u32,
+    ) -> u64;
+
+    /// Lets ray `i` want nothing more: its limit becomes negative infinity.
+    fn drop_ray(packet: &mut Self::Packet, i: usize);
+
+    /// The query of ray `i` by itself.
+    fn of_packet(&self, packet: &Self::Packet, i: usize) -> Self::Query;
 }
 
 /// Work done by traversal.

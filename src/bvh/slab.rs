@@ -42,7 +42,7 @@ fn padding(extent: f32, largest: f32) -> f32 {
 
 /// The same as [`padded`] for four boxes, a lane each: minimum and maximum per axis.
 #[inline(always)]
-fn padded_four(boxes: &mut [[Vec4; 2]; 3]) {
+pub fn padded_four(boxes: &mut [[Vec4; 2]; 3]) {
     let [[x0, x1], [y0, y1], [z0, z1]] = *boxes;
     let extent = (x1 - x0).max(y1 - y0).max(z1 - z0);
     let largest = |lo: Vec4, hi: Vec4| lo.abs().max(hi.abs());
@@ -102,8 +102,14 @@ impl SlabRay {
             origin: ray.origin.extend(ray.t_min).to_array(),
             inverse: inverse.with_w(t_max).to_array(),
             octant,
-            near: [octant & 1, 2 + (octant >> 1 & 1), 4 + (octant >> 2)],
+            near: Self::near_rows(octant),
         }
+    }
+
+    /// The rows of planes that a ray of this octant meets first.
+    #[inline(always)]
+    pub(super) fn near_rows(octant: u32) -> [u32; 3] {
+        [octant & 1, 2 + (octant >> 1 & 1), 4 + (octant >> 2 & 1)]
     }
 
     /// For an axis the side (0 minimum, 1 maximum) of a box that the ray meets first.
@@ -146,7 +152,7 @@ impl SlabRay {
             (boxes[axis][side & 1] - Vec4::splat(self.origin[axis]))
                 * Vec4::splat(self.inverse[axis])
         };
-        let [x, y, z] = [0, 1, 2].map(|axis| self.near_side(axis));
+        let [x, y, z] = [self.near_side(0), self.near_side(1), self.near_side(2)];
         let near = t(0, x)
             .max(t(1, y))
             .max(t(2, z).max(Vec4::splat(self.t_min())));

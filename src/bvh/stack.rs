@@ -62,6 +62,15 @@ impl<const SIZE: usize> Stack<SIZE> {
         top + meets.count_ones() as usize
     }
 
+    /// Puts one entry on the stack with this `top` if it begins at or before `limit`; returns the new
+    /// top.
+    #[inline(always)]
+    pub(super) fn put(&mut self, top: usize, (reference, near): (u32, f32), limit: f32) -> usize {
+        self.references[top & Self::MASK] = reference;
+        self.near[top & Self::MASK] = near;
+        top + usize::from(near <= limit)
+    }
+
     /// Takes the nearest entry that begins at or before `limit` off the stack with this `top`;
     /// returns it and the new top. At the bottom there is [`DONE`].
     #[inline(always)]

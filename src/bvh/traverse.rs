@@ -1,4 +1,5 @@
-use super::leaves::{Leaves, Work};
+use super::leaves::{Leaves, PacketLeaves, Work};
+use super::packet::Packets;
 use super::simd::dispatch;
 use super::single::Single;
 use super::stack::{DEEP, SHALLOW, is_enough};
@@ -60,5 +61,50 @@ impl Bvh {
             answer,
         };
         dispatch(isa, kernel)
+    }
+
+    /// The same as [`Self::traverse`] for closest hits and rays of which every
+    /// [`PACKET`](super::PACKET) in a row take nearly the same way.
+    pub fn traverse_coherent<L: PacketLeaves>(
+        &self,
+        isa: Isa,
+        leaves: &L,
+        rays: &[Ray],
+        mut answer: impl FnMut(usize, Option<&L::Query>),
+    ) -> Work {
+        if self.nodes().is_empty() {
+            return self.traverse::<false, L>(isa, leaves, rays, answer);
+        }
+        let mut rest = Vec::new();
+        let work = if is_enough(SHALLOW, self.wide_depth()) {
+            self.packets::<SHALLOW, L>(isa, leaves, rays, (&mut answer, &mut rest))
+        } else {
+            self.packets::<DEEP, L>(isa, leaves, rays, (&mut answer, &mut rest))
+        };
+        let single: Vec<_> = rest.iter().map(|&i| rays[i as usize]).collect();
+        let more = self.traverse::<false, L>(isa, leaves, &single, |i, query| {
+            answer(rest[i] as usize, query);
+        });
+        Work {
+            nodes: work.nodes + more.nodes,
+            blocks: work.blocks + more.blocks,
+        }
+    }
+
+    fn packets<const STACK: usize, L: PacketLeaves>(
+        &self,
+        isa: Isa,
+        leaves: &L,
+        rays: &[Ray],
+        (answer, rest): (impl FnMut(usize, Option<&L::Query>), &mut Vec<u32>),
+    ) -> Work {
+        let packets = Packets::<_, _, STACK> {
+            bvh: self,
+            leaves,
+            rays,
+            answer,
+            rest,
+        };
+        dispatch(isa, packets)
     }
 }

@@ -2,7 +2,7 @@ use std::ops::{ControlFlow, Range};
 use std::sync::Arc;
 
 use super::block::{Block, ID_LIMIT};
-use super::leaf::{LeafOrder, bounds};
+use super::leaf::{LeafOrder, Query, bounds};
 use super::refine::{refine, refine_meshes};
 use super::{Hit, Instance, InstanceStats, Instances, Placement, Shapes};
 use crate::bvh::{BLOCK, Bvh, BvhKind, BvhQuality, BvhSettings, BvhStats, NodeId, Progress, Work};
@@ -20,6 +20,14 @@ pub struct TraceCounts {
     pub box_tests: u64,
     /// Primitives tested; a block counts four, whether or not it is full.
     pub primitive_tests: u64,
+}
+
+impl TraceCounts {
+    fn add(&mut self, rays: &[Ray], work: Work) {
+        self.rays += rays.len() as u64;
+        self.box_tests += work.nodes * 8;
+        self.primitive_tests += work.blocks * BLOCK as u64;
+    }
 }
 
 /// Shapes under a bounding volume hierarchy, and meshes that stand beside them without being
@@ -222,6 +230,27 @@ impl Aggregate {
         }
     }
 
+    /// The same as [`Self::closest_hit`], two to four times as fast if every 32 rays in a row (the first
+    /// 32, the next, and so on) take nearly the same way: those through 8 x 4 pixels, or several
+    /// samples of fewer pixels. Best of all if they start at one point. Rays that part go on one by
+    /// one; rays that never agreed in the signs and the longest axis of their directions cost a little
+    /// more than there.
+    ///
+    /// # Panics
+    /// When the slices differ in length.
+    pub fn closest_hit_coherent(&self, rays: &[Ray], hits: &mut [Hit], counts: &mut TraceCounts) {
+        assert_eq!(rays.len(), hits.len());
+        let (isa, leaves) = (self.isa, &*self.leaves);
+        let answer = |i: usize, query: Option<&Query>| {
+            hits[i] = query.map_or(Hit::MISS, |query| query.hit);
+        };
+        let work = self.bvh.traverse_coherent(isa, leaves, rays, answer);
+        counts.add(rays, work);
+        if let Some(instances) = &self.instances {
+            instances.closest_hit(isa, rays, hits, counts);
+        }
+    }
+
     /// Writes for each ray whether anything lies on it.
     ///
     /// # Panics
@@ -262,8 +291,6 @@ impl Aggregate {
         answer: impl FnMut(usize, Hit),
     ) {
         let work = self.trace_shapes::<ANY>(self.isa, rays, answer);
-        counts.rays += rays.len() as u64;
-        counts.box_tests += work.nodes * 8;
-        counts.primitive_tests += work.blocks * BLOCK as u64;
+        counts.add(rays, work);
     }
 }

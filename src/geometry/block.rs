@@ -117,6 +117,16 @@ impl Block {
         self.ids[lane] & NOTHING
     }
 
+    /// Lanes in use; the others lie behind them.
+    #[inline(always)]
+    pub(super) fn len(&self) -> usize {
+        let mut len = BLOCK;
+        while len > 0 && self.id(len - 1) == NOTHING {
+            len -= 1;
+        }
+        len
+    }
+
     /// The primitives.
     pub(super) fn ids(&self) -> impl Iterator<Item = u32> + '_ {
         (0..BLOCK)

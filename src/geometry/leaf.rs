@@ -58,6 +58,12 @@ pub(super) struct Query {
 }
 
 impl Query {
+    /// A ray with the best hit so far.
+    #[inline(always)]
+    pub(super) fn new(shear: Shear, hit: Hit) -> Self {
+        Self { shear, hit }
+    }
+
     /// Takes a hit if it is valid and better than the best so far.
     ///
     /// Every test depends on the primitive and the ray alone, so the result depends neither on the
@@ -89,7 +95,7 @@ impl Query {
     }
 
     #[cold]
-    fn spheres(&mut self, leaves: &LeafOrder, ray: (&Ray, &SlabRay), block: &Block) {
+    pub(super) fn spheres(&mut self, leaves: &LeafOrder, ray: (&Ray, &SlabRay), block: &Block) {
         for primitive in block.ids().filter(|&id| id >= leaves.first_sphere) {
             let sphere = leaves.spheres[(primitive - leaves.first_sphere) as usize];
             for t in sphere.meet(ray.0).into_iter().flatten() {
@@ -142,7 +148,12 @@ impl Query {
 
     /// The triangles in `lanes`, one at a time with exact edge functions.
     #[cold]
-    fn triangles_on_edges(&mut self, (ray, slab): (&Ray, &SlabRay), block: &Block, lanes: u32) {
+    pub(super) fn triangles_on_edges(
+        &mut self,
+        (ray, slab): (&Ray, &SlabRay),
+        block: &Block,
+        lanes: u32,
+    ) {
         for lane in (0..BLOCK).filter(|lane| lanes >> lane & 1 == 1) {
             let vertices = block.vertices(lane);
             if let Some(hit) = self.shear.meet(ray.origin, &vertices) {

@@ -13,6 +13,8 @@ mod instances;
 mod leaf;
 mod mesh;
 mod overlap;
+mod packet;
+mod packet_leaf;
 mod placement;
 mod refine;
 mod refit;

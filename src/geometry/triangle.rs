@@ -75,6 +75,12 @@ impl Shear {
         }
     }
 
+    /// From the axes of the sheared space and what belongs to them.
+    #[inline(always)]
+    pub(super) fn of(axes: [u8; 3], [x, y, z]: [f32; 3]) -> Self {
+        Self { axes, x, y, z }
+    }
+
     /// The edge functions of four triangles; those of a shared edge differ in sign only, so no ray
     /// slips through between two triangles. Nothing depends on hits found before.
     #[inline(always)]

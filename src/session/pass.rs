@@ -65,9 +65,8 @@ pub(super) fn render_pass(
 fn next_batch(tile: &Tile, target: u32, size: usize, ids: &mut Vec<PathId>) -> bool {
     ids.clear();
     let open = || {
-        tile.pixels()
-            .iter()
-            .enumerate()
+        tile.in_blocks()
+            .map(|index| (index, &tile.pixels()[index]))
             .filter(|(_, pixel)| !pixel.is_closed())
     };
     let first = open()

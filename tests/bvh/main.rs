@@ -5,6 +5,7 @@ mod degenerate;
 mod exact;
 mod instances;
 mod oracle;
+mod packets;
 mod scenes;
 mod selfhit;
 mod structure;

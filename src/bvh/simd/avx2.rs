@@ -12,6 +12,7 @@ use std::arch::x86_64::{
 
 use super::super::node::{WIDTH, WideNode};
 use super::super::slab::{FAR_MARGIN, SlabRay};
+use super::avx2_lanes::Avx2Lanes;
 use super::{Kernel, NodeTest};
 use crate::math::Isa;
 
@@ -53,6 +54,8 @@ fn permutation(order: u64) -> __m256i {
 
 impl NodeTest for Avx2 {
     type PerSlot = __m256;
+
+    type Rays = Avx2Lanes;
 
     #[inline(always)]
     fn enter(node: &WideNode, ray: &SlabRay, limit: f32) -> (__m256, u32) {

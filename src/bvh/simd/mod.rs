@@ -1,10 +1,17 @@
-//! The SIMD room of the traversal: one node against one ray, for each instruction set.
+//! The SIMD room of the traversal, for each instruction set: one node against one ray, and eight
+//! numbers at once.
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
+#[cfg(target_arch = "x86_64")]
+mod avx2_lanes;
+mod lanes;
 mod portable;
+mod portable_lanes;
 mod prefetch;
 
+pub(super) use lanes::LANES;
+pub use lanes::Lanes;
 pub(super) use prefetch::prefetch;
 
 use super::node::{WIDTH, WideNode};
@@ -15,6 +22,9 @@ use crate::math::Isa;
 pub(super) trait NodeTest {
     /// A number for each slot.
     type PerSlot: Copy;
+
+    /// A number for each of eight rays.
+    type Rays: Lanes;
 
     /// Entry parameters of the boxes, and a bit for each slot whose box the ray meets before
     /// `limit`; the same numbers as [`SlabRay::enter`].

@@ -3,6 +3,7 @@ use glam::Vec4;
 use super::super::node::{WIDTH, WideNode};
 use super::super::slab::{FAR_MARGIN, SlabRay};
 use super::NodeTest;
+use super::portable_lanes::PortableLanes;
 
 /// Two vectors of four, which every processor has.
 #[derive(Debug)]
@@ -10,6 +11,8 @@ pub(in super::super) struct Portable;
 
 impl NodeTest for Portable {
     type PerSlot = [f32; WIDTH];
+
+    type Rays = PortableLanes;
 
     #[inline(always)]
     fn enter(node: &WideNode, ray: &SlabRay, limit: f32) -> (Self::PerSlot, u32) {

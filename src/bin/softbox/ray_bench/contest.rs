@@ -6,7 +6,7 @@ use softbox::geometry::{Aggregate, Hit, Shapes};
 use softbox::math::Isa;
 
 use super::clock::{Taken, of_process, of_thread};
-use super::rays::{RaySet, ray_sets};
+use super::rays::{Kind, RaySet, ray_sets};
 use super::result::{BuildResult, Mismatches, RaysResult, SceneResult};
 use super::{Exact, Protocol, Subject, System, Tracer, median};
 
@@ -172,7 +172,11 @@ impl Hits {
         } else {
             let work = batches.zip(self.closest.chunks_mut(BATCH));
             run(work, threads, |(rays, out)| {
-                tracer.closest_hit(rays, out);
+                if set.kind == Kind::Primary {
+                    tracer.primary_hit(rays, out);
+                } else {
+                    tracer.closest_hit(rays, out);
+                }
                 rays.len()
             })
         }

@@ -6,7 +6,7 @@
 //!   part of its time; making its input mesh is not.
 //! - Rates count processor time, which other work on the machine disturbs less than wall time. They
 //!   are medians over rounds; in each round all systems take turns.
-//! - Primary rays go in tiles of 8 x 8 pixels. Bounces are diffuse (proportional to the cosine) and
+//! - Primary rays go in tiles of 8 x 8 pixels, and ours and the packets of others may use that. Bounces are diffuse (proportional to the cosine) and
 //!   shadow rays go to a random point of the lamp; both keep the order of the primary rays.
 
 mod catalog;

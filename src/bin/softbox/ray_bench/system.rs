@@ -12,6 +12,10 @@ use super::Kind;
 pub(crate) trait Tracer: Send + Sync {
     /// Writes the closest hit of each ray.
     fn closest_hit(&self, rays: &[Ray], hits: &mut [Hit]);
+    /// The same for camera rays, which come in tiles.
+    fn primary_hit(&self, rays: &[Ray], hits: &mut [Hit]) {
+        self.closest_hit(rays, hits);
+    }
     /// Writes for each ray whether anything lies on it.
     fn any_hit(&self, rays: &[Ray], occluded: &mut [bool]);
     /// Memory of the structure in bytes, triangles included where it holds its own.
@@ -91,6 +95,11 @@ struct Ours(Aggregate);
 impl Tracer for Ours {
     fn closest_hit(&self, rays: &[Ray], hits: &mut [Hit]) {
         self.0.closest_hit(rays, hits, &mut TraceCounts::default());
+    }
+
+    fn primary_hit(&self, rays: &[Ray], hits: &mut [Hit]) {
+        self.0
+            .closest_hit_coherent(rays, hits, &mut TraceCounts::default());
     }
 
     fn any_hit(&self, rays: &[Ray], occluded: &mut [bool]) {

@@ -1,0 +1,157 @@
+use super::super::leaves::{Leaves, Work};
+use super::super::node::{LEAF, WideNode};
+use super::super::simd::{NodeTest, prefetch};
+use super::super::slab::SlabRay;
+use super::super::stack::{BOTTOM, DONE, Stack};
+use super::super::tree::Bvh;
+use crate::math::Ray;
+
+/// Rays that go by themselves at the same time.
+pub(super) const POOL: usize = 64;
+
+/// Rays that have left their packets, a step each in turn.
+pub(super) struct Pool<Q, const STACK: usize> {
+    lanes: Vec<Lane<Q>>,
+    stacks: Vec<Stack<STACK>>,
+    /// Lanes that wait for a node, for a leaf, and for a ray: a bit each.
+    nodes: u64,
+    leaves: u64,
+    free: u64,
+}
+
+/// One of them.
+#[derive(Clone, Copy)]
+#[repr(align(64))]
+pub(super) struct Lane<Q> {
+    pub(super) slab: SlabRay,
+    pub(super) limit: f32,
+    /// What is visited next.
+    pub(super) at: u32,
+    /// Top of the stack.
+    pub(super) top: u32,
+    /// Number of the ray.
+    pub(super) ray: u32,
+    pub(super) query: Q,
+}
+
+/// Takes the lowest bit out of a set.
+#[inline(always)]
+pub(super) fn take(set: &mut u64) -> usize {
+    let lowest = set.trailing_zeros();
+    *set &= *set - 1;
+    lowest as usize
+}
+
+impl<Q: Copy, const STACK: usize> Pool<Q, STACK> {
+    /// Nobody.
+    pub(super) fn new() -> Self {
+        Self {
+            lanes: Vec::with_capacity(POOL),
+            stacks: vec![Stack::EMPTY; POOL],
+            nodes: 0,
+            leaves: 0,
+            free: u64::MAX,
+        }
+    }
+
+    /// Lanes without a ray.
+    #[inline(always)]
+    pub(super) fn free(&self) -> u32 {
+        self.free.count_ones()
+    }
+
+    /// Lanes with a ray, a bit each.
+    #[inline(always)]
+    pub(super) fn taken(&self) -> u64 {
+        !self.free
+    }
+
+    /// Takes in a ray if there is a free lane; returns its number. `stack` puts what it has still to
+    /// visit after `lane.at` on the stack with the given top, and returns the new one.
+    #[inline(always)]
+    pub(super) fn add(
+        &mut self,
+        mut lane: Lane<Q>,
+        stack: impl FnOnce(&mut Stack<STACK>, usize) -> usize,
+    ) -> usize {
+        let number = take(&mut self.free);
+        lane.top = stack(&mut self.stacks[number], BOTTOM) as u32;
+        if lane.at & LEAF == 0 {
+            self.nodes |= 1 << number;
+        } else {
+            self.leaves |= 1 << number;
+        }
+        if number == self.lanes.len() {
+            self.lanes.push(lane);
+        } else {
+            self.lanes[number] = lane;
+        }
+        number
+    }
+
+    /// Gives the lane back; returns what was in it.
+    #[inline(always)]
+    pub(super) fn remove(&mut self, number: usize) -> &Lane<Q> {
+        self.free |= 1 << number;
+        &self.lanes[number]
+    }
+
+    /// Leads the rays in the lanes of `set` on until at most `keep` of them have something left to
+    /// visit; returns the others.
+    #[inline(always)]
+    pub(super) fn run<N: NodeTest, L: Leaves<Query = Q>>(
+        &mut self,
+        (set, keep): (u64, u32),
+        bvh: &Bvh,
+        leaves: &L,
+        rays: &[Ray],
+        work: &mut Work,
+    ) -> u64 {
+        loop {
+            let open = set & (self.nodes | self.leaves);
+            if open.count_ones() <= keep {
+                return set & !open;
+            }
+            let mut now = set & self.nodes;
+            self.nodes &= !set;
+            work.nodes += u64::from(now.count_ones());
+            while now != 0 {
+                let number = take(&mut now);
+                let lane = &mut self.lanes[number];
+                let node = &bvh.nodes()[lane.at as usize];
+                let met = N::enter(node, &lane.slab, lane.limit);
+                let (top, octant) = (lane.top as usize, lane.slab.octant as usize);
+                let stack = &mut self.stacks[number];
+                lane.top = stack.push::<N, false>(top, octant, met, &node.children) as u32;
+                self.next(number, bvh, leaves);
+            }
+            let mut now = set & self.leaves;
+            self.leaves &= !set;
+            while now != 0 {
+                let number = take(&mut now);
+                let lane = &mut self.lanes[number];
+                let ray = (&rays[lane.ray as usize], &lane.slab);
+                let blocks = &mut work.blocks;
+                lane.limit = leaves.visit::<false>(lane.at & !LEAF, ray, &mut lane.query, blocks);
+                self.next(number, bvh, leaves);
+            }
+        }
+    }
+
+    /// Takes what a ray visits next off its stack.
+    #[inline(always)]
+    fn next<L: Leaves<Query = Q>>(&mut self, number: usize, bvh: &Bvh, leaves: &L) {
+        let lane = &mut self.lanes[number];
+        let (at, top) = self.stacks[number].pop::<false>(lane.top as usize, lane.limit);
+        (lane.at, lane.top) = (at, top as u32);
+        let (is_leaf, is_done) = (at & LEAF != 0, at == DONE);
+        self.nodes |= u64::from(!is_leaf) << number;
+        self.leaves |= u64::from(is_leaf & !is_done) << number;
+        let (memory, size): (*const u8, usize) = if is_leaf {
+            (leaves.blocks().as_ptr().cast(), size_of::<L::Block>())
+        } else {
+            (bvh.nodes().as_ptr().cast(), size_of::<WideNode>())
+        };
+        prefetch(memory.wrapping_add((at & !LEAF) as usize * size), 4);
+    }
+}

@@ -1,0 +1,190 @@
+use super::super::simd::{LANES, Lanes};
+use super::super::slab::{FAR_MARGIN, SlabRay, T_FAR};
+use super::super::tree::BLOCK;
+use crate::math::Ray;
+
+/// Groups of eight rays in a packet.
+pub const GROUPS: usize = 4;
+
+/// Rays in a packet.
+pub const PACKET: usize = GROUPS * LANES;
+
+/// A number for each ray of a packet.
+pub type PerRay = [[f32; LANES]; GROUPS];
+
+/// The rays of a packet side by side, prepared for box tests: all valid, all in one octant. The
+/// numbers are those of [`SlabRay`].
+#[derive(Clone, Debug)]
+#[repr(C, align(64))]
+pub struct PacketRays {
+    /// Per axis.
+    pub(super) origin: [PerRay; 3],
+    /// Per axis, with +0 for −0.
+    direction: [PerRay; 3],
+    /// One over the direction, finite.
+    pub(super) inverse: [PerRay; 3],
+    pub(super) t_min: PerRay,
+    /// At most [`T_FAR`].
+    t_max: PerRay,
+    pub(super) octant: u32,
+}
+
+impl PacketRays {
+    /// Room for a packet.
+    pub(super) const EMPTY: Self = Self {
+        origin: [[[0.0; LANES]; GROUPS]; 3],
+        direction: [[[0.0; LANES]; GROUPS]; 3],
+        inverse: [[[0.0; LANES]; GROUPS]; 3],
+        t_min: [[0.0; LANES]; GROUPS],
+        t_max: [[0.0; LANES]; GROUPS],
+        octant: 0,
+    };
+
+    /// Takes in `rays`; false if one of them can meet nothing ([`SlabRay::new`]) or they do not agree
+    /// in the signs of their directions.
+    #[inline(always)]
+    pub(super) fn set<V: Lanes>(&mut self, rays: &[Ray; PACKET]) -> bool {
+        for (i, ray) in rays.iter().enumerate() {
+            let (group, lane) = (i / LANES, i % LANES);
+            let (origin, direction) = (ray.origin.to_array(), ray.direction.to_array());
+            for axis in 0..3 {
+                self.origin[axis][group][lane] = origin[axis];
+                self.direction[axis][group][lane] = direction[axis];
+            }
+            self.t_min[group][lane] = ray.t_min;
+            self.t_max[group][lane] = ray.t_max;
+        }
+        let mut is_valid = true;
+        let mut negative = [[0; 3]; GROUPS];
+        for (group, negative) in negative.iter_mut().enumerate() {
+            is_valid &= self.prepare::<V>(group, negative);
+        }
+        let first = [negative[0][0] & 1, negative[0][1] & 1, negative[0][2] & 1];
+        self.octant = first[0] | first[1] << 1 | first[2] << 2;
+        let all = [first[0] * 0xff, first[1] * 0xff, first[2] * 0xff];
+        is_valid && negative.iter().all(|negative| *negative == all)
+    }
+
+    /// The computations of [`SlabRay::new`] for one group; a bit in `negative` for each ray whose
+    /// direction is negative on that axis. False if a ray can meet nothing.
+    #[inline(always)]
+    fn prepare<V: Lanes>(&mut self, group: usize, negative: &mut [u32; 3]) -> bool {
+        let zero = V::splat(0.0);
+        let (t_min, t_max) = (self.t_min::<V>(group), self.t_max::<V>(group));
+        // Zero, or NaN if anything is infinite or NaN.
+        let mut nothing = t_min * zero;
+        let mut is_zero = V::eq(zero, zero);
+        for (axis, negative) in negative.iter_mut().enumerate() {
+            let direction = V::load(&self.direction[axis][group]);
+            nothing = nothing + self.origin::<V>(axis, group) * zero + direction * zero;
+            is_zero = is_zero & direction.eq(zero);
+            let direction = direction + zero;
+            direction.store(&mut self.direction[axis][group]);
+            let inverse = (V::splat(1.0) / direction)
+                .min(V::splat(f32::MAX))
+                .max(V::splat(-f32::MAX));
+            inverse.store(&mut self.inverse[axis][group]);
+            *negative = V::bits(direction.lt(zero));
+        }
+        let is_valid = V::bits(nothing.eq(zero) & t_min.lt(t_max));
+        t_max.min(V::splat(T_FAR)).store(&mut self.t_max[group]);
+        is_valid == 0xff && V::bits(is_zero) == 0
+    }
+
+    /// True when all rays start at one point.
+    #[inline(always)]
+    pub(super) fn share_origin<V: Lanes>(&self) -> bool {
+        let mut same = V::splat(0.0).eq(V::splat(0.0));
+        for axis in 0..3 {
+            let first = V::splat(self.origin[axis][0][0]);
+            for group in 0..GROUPS {
+                same = same & first.eq(self.origin(axis, group));
+            }
+        }
+        V::bits(same) == 0xff
+    }
+
+    /// Ray `i` by itself.
+    #[inline(always)]
+    pub fn slab(&self, i: usize) -> SlabRay {
+        let at = |values: &PerRay| values[i / LANES % GROUPS][i % LANES];
+        SlabRay {
+            origin: [
+                at(&self.origin[0]),
+                at(&self.origin[1]),
+                at(&self.origin[2]),
+                at(&self.t_min),
+            ],
+            inverse: [
+                at(&self.inverse[0]),
+                at(&self.inverse[1]),
+                at(&self.inverse[2]),
+                at(&self.t_max),
+            ],
+            octant: self.octant,
+            near: SlabRay::near_rows(self.octant),
+        }
+    }
+
+    /// Coordinate `axis` of the origin of the first ray.
+    #[inline(always)]
+    pub fn first_origin(&self, axis: usize) -> f32 {
+        self.origin[axis][0][0]
+    }
+
+    /// Coordinate `axis` of the origins of a group.
+    #[inline(always)]
+    pub fn origin<V: Lanes>(&self, axis: usize, group: usize) -> V {
+        V::load(&self.origin[axis][group])
+    }
+
+    /// Component `axis` of the directions of a group, with +0 for −0.
+    #[inline(always)]
+    pub fn direction<V: Lanes>(&self, axis: usize, group: usize) -> V {
+        V::load(&self.direction[axis][group])
+    }
+
+    /// One over the directions, as [`SlabRay::inverse_direction`].
+    #[inline(always)]
+    pub fn inverse<V: Lanes>(&self, axis: usize, group: usize) -> V {
+        V::load(&self.inverse[axis][group])
+    }
+
+    /// Starts of the valid intervals.
+    #[inline(always)]
+    pub fn t_min<V: Lanes>(&self, group: usize) -> V {
+        V::load(&self.t_min[group])
+    }
+
+    /// Ends of the valid intervals, at most [`T_FAR`].
+    #[inline(always)]
+    pub fn t_max<V: Lanes>(&self, group: usize) -> V {
+        V::load(&self.t_max[group])
+    }
+
+    /// End of the valid interval of ray `i`.
+    #[inline(always)]
+    pub fn t_max_of(&self, i: usize) -> f32 {
+        self.t_max[i / LANES % GROUPS][i % LANES]
+    }
+
+    /// [`SlabRay::enter`] for the rays of a group and one box, which must not be empty: minimum and
+    /// maximum per axis.
+    #[inline(always)]
+    pub fn enter<V: Lanes>(
+        &self,
+        boxes: &[[[f32; BLOCK]; 2]; 3],
+        which: usize,
+        group: usize,
+    ) -> (V, V::Mask) {
+        let t = |axis: usize, side: u32| {
+            let side = (self.octant >> axis & 1) ^ side;
+            (V::splat(boxes[axis][side as usize & 1][which]) - self.origin(axis, group))
+                * self.inverse(axis, group)
+        };
+        let near = t(0, 0).max(t(1, 0)).max(t(2, 0).max(self.t_min(group)));
+        let far = t(0, 1).min(t(1, 1)).min(t(2, 1).min(self.t_max(group)));
+        let far = far * V::splat(FAR_MARGIN);
+        (near, near.le(far))
+    }
+}

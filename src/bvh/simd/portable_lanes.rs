@@ -1,0 +1,92 @@
+use std::ops::{Add, BitAnd, BitOr, Div, Mul, Sub};
+
+use glam::{BVec4A, Vec4};
+
+use super::lanes::{LANES, Lanes};
+
+/// Eight lanes as two vectors of four.
+#[derive(Clone, Copy, Debug)]
+pub(in super::super) struct PortableLanes(Vec4, Vec4);
+
+/// A truth value for each of [`PortableLanes`].
+#[derive(Clone, Copy, Debug)]
+pub(in super::super) struct PortableMask(BVec4A, BVec4A);
+
+macro_rules! operators {
+    ($type:ty: $($trait:ident $name:ident;)*) => {
+        $(impl $trait for $type {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $name(self, other: Self) -> Self {
+                Self(self.0.$name(other.0), self.1.$name(other.1))
+            }
+        })*
+    };
+}
+
+operators! { PortableLanes: Add add; Sub sub; Mul mul; Div div; }
+operators! { PortableMask: BitAnd bitand; BitOr bitor; }
+
+impl Lanes for PortableLanes {
+    type Mask = PortableMask;
+
+    #[inline(always)]
+    fn splat(value: f32) -> Self {
+        Self(Vec4::splat(value), Vec4::splat(value))
+    }
+
+    #[inline(always)]
+    fn load(from: &[f32; LANES]) -> Self {
+        Self(Vec4::from_slice(&from[..4]), Vec4::from_slice(&from[4..]))
+    }
+
+    #[inline(always)]
+    fn store(self, to: &mut [f32; LANES]) {
+        self.0.write_to_slice(&mut to[..4]);
+        self.1.write_to_slice(&mut to[4..]);
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        Self(self.0.min(other.0), self.1.min(other.1))
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Self(self.0.max(other.0), self.1.max(other.1))
+    }
+
+    #[inline(always)]
+    fn lt(self, other: Self) -> PortableMask {
+        PortableMask(self.0.cmplt(other.0), self.1.cmplt(other.1))
+    }
+
+    #[inline(always)]
+    fn le(self, other: Self) -> PortableMask {
+        PortableMask(self.0.cmple(other.0), self.1.cmple(other.1))
+    }
+
+    #[inline(always)]
+    fn eq(self, other: Self) -> PortableMask {
+        PortableMask(self.0.cmpeq(other.0), self.1.cmpeq(other.1))
+    }
+
+    #[inline(always)]
+    fn select(mask: PortableMask, yes: Self, no: Self) -> Self {
+        Self(
+            Vec4::select(mask.0, yes.0, no.0),
+            Vec4::select(mask.1, yes.1, no.1),
+        )
+    }
+
+    #[inline(always)]
+    fn without(mask: PortableMask, other: PortableMask) -> PortableMask {
+        PortableMask(mask.0 & !other.0, mask.1 & !other.1)
+    }
+
+    #[inline(always)]
+    fn bits(mask: PortableMask) -> u32 {
+        mask.0.bitmask() | mask.1.bitmask() << 4
+    }
+}

@@ -1,0 +1,313 @@
+use glam::Vec4;
+
+use super::Hit;
+use super::block::Block;
+use super::leaf::Query;
+use super::triangle::Shear;
+use crate::bvh::{BLOCK, GROUPS, Lanes, PACKET, PacketRays, PerRay, SlabRay, padded_four};
+use crate::math::Ray;
+
+/// Rays in a group.
+pub(super) const LANES: usize = PACKET / GROUPS;
+
+const ZERO: PerRay = [[0.0; LANES]; GROUPS];
+
+/// The rays of a packet among the primitives: [`Query`] side by side, all sheared along one axis.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub(super) struct Packet {
+    axes: [u8; 3],
+    x: PerRay,
+    y: PerRay,
+    z: PerRay,
+    /// The smaller of the best hit and the end of the ray.
+    limit: PerRay,
+    t: PerRay,
+    b1: PerRay,
+    b2: PerRay,
+    /// The bits of the ids.
+    primitive: PerRay,
+}
+
+impl Default for Packet {
+    fn default() -> Self {
+        Self {
+            axes: [0; 3],
+            x: ZERO,
+            y: ZERO,
+            z: ZERO,
+            limit: ZERO,
+            t: ZERO,
+            b1: ZERO,
+            b2: ZERO,
+            primitive: ZERO,
+        }
+    }
+}
+
+/// Four triangles prepared for a packet: per vertex and axis of the sheared space, seen from the
+/// origin if all rays share it.
+pub(super) type Corners = [[[f32; BLOCK]; 3]; 3];
+
+/// What a hit needs of four triangles.
+pub(super) struct Planes {
+    normal: [[f32; BLOCK]; 3],
+    /// Of the origin from the plane, times the length of the normal; if all rays share it.
+    distance: [f32; BLOCK],
+    /// Padded; minimum and maximum per axis.
+    bounds: [[[f32; BLOCK]; 2]; 3],
+}
+
+impl Planes {
+    #[inline(always)]
+    pub(super) fn new(block: &Block, axes: [u8; 3], corners: &Corners) -> Self {
+        let normal = block.normals(axes);
+        let first = |axis: usize| Vec4::from_array(corners[0][axis]);
+        let distance = normal[0] * first(0) + normal[1] * first(1) + normal[2] * first(2);
+        let mut bounds = block.bounds();
+        padded_four(&mut bounds);
+        let mut out = Self {
+            normal: [[0.0; BLOCK]; 3],
+            distance: distance.to_array(),
+            bounds: [[[0.0; BLOCK]; 2]; 3],
+        };
+        // Without closures over arrays: those are not always inlined.
+        for axis in 0..3 {
+            out.normal[axis] = normal[axis].to_array();
+            out.bounds[axis] = [bounds[axis][0].to_array(), bounds[axis][1].to_array()];
+        }
+        out
+    }
+}
+
+/// The edge functions of one triangle for a group of rays.
+pub(super) struct Edges<V> {
+    pub(super) u: V,
+    pub(super) v: V,
+    pub(super) w: V,
+}
+
+impl Packet {
+    /// Takes in the rays, which have hit nothing yet; false if they are not longest along one axis.
+    #[inline(always)]
+    pub(super) fn set<V: Lanes>(&mut self, rays: &PacketRays) -> bool {
+        let mut longest = [[0; 2]; GROUPS];
+        for (group, longest) in longest.iter_mut().enumerate() {
+            let size = |axis: usize| rays.direction::<V>(axis, group).abs();
+            let (x, y, z) = (size(0), size(1), size(2));
+            *longest = [V::bits(z.gt(x) & z.gt(y)), V::bits(y.gt(x))];
+        }
+        let axis = |[z, y]: [u32; 2]| match (z, y) {
+            (0xff, _) => Some(2),
+            (0, 0xff) => Some(1),
+            (0, 0) => Some(0),
+            _ => None,
+        };
+        let Some(z) = axis(longest[0]) else {
+            return false;
+        };
+        if longest[1..].iter().any(|&more| axis(more) != Some(z)) {
+            return false;
+        }
+        let (x, y) = ((z + 1) % 3, (z + 2) % 3);
+        self.axes = [x as u8, y as u8, z as u8];
+        for group in 0..GROUPS {
+            let inverse = rays.inverse::<V>(z, group);
+            (rays.direction::<V>(x, group) * inverse).store(&mut self.x[group]);
+            (rays.direction::<V>(y, group) * inverse).store(&mut self.y[group]);
+            inverse.store(&mut self.z[group]);
+            rays.t_max::<V>(group).store(&mut self.limit[group]);
+            V::splat(Hit::MISS.t).store(&mut self.t[group]);
+            V::splat(0.0).store(&mut self.b1[group]);
+            V::splat(0.0).store(&mut self.b2[group]);
+            V::splat(f32::from_bits(Hit::MISS.primitive)).store(&mut self.primitive[group]);
+        }
+        true
+    }
+
+    /// For each ray the parameter beyond which nothing matters any more.
+    #[inline(always)]
+    pub(super) fn limit(&self) -> &PerRay {
+        &self.limit
+    }
+
+    /// The axes of the sheared space.
+    #[inline(always)]
+    pub(super) fn axes(&self) -> [u8; 3] {
+        self.axes
+    }
+
+    /// The same as [`Shear::edges`] for one triangle and a group of rays.
+    #[inline(always)]
+    pub(super) fn edges<V: Lanes, const SHARED: bool>(
+        &self,
+        rays: &PacketRays,
+        corners: &Corners,
+        (triangle, group): (usize, usize),
+    ) -> Edges<V> {
+        let (shear_x, shear_y) = (V::load(&self.x[group]), V::load(&self.y[group]));
+        let at = |corner: usize, axis: usize| {
+            let value = V::splat(corners[corner][axis][triangle]);
+            if SHARED {
+                value
+            } else {
+                value - rays.origin(usize::from(self.axes[axis]) % 3, group)
+            }
+        };
+        let corner = |corner: usize| {
+            let z = at(corner, 2);
+            (at(corner, 0) - shear_x * z, at(corner, 1) - shear_y * z)
+        };
+        let (a, b, c) = (corner(0), corner(1), corner(2));
+        Edges {
+            u: c.0 * b.1 - c.1 * b.0,
+            v: a.0 * c.1 - a.1 * c.0,
+            w: b.0 * a.1 - b.1 * a.0,
+        }
+    }
+
+    /// The same as [`Shear::hits`].
+    #[inline(always)]
+    pub(super) fn hits<V: Lanes, const SHARED: bool>(
+        &self,
+        rays: &PacketRays,
+        (corners, planes): (&Corners, &Planes),
+        edges: &Edges<V>,
+        (triangle, group): (usize, usize),
+    ) -> [V; 3] {
+        let normal = [
+            V::splat(planes.normal[0][triangle]),
+            V::splat(planes.normal[1][triangle]),
+            V::splat(planes.normal[2][triangle]),
+        ];
+        let distance = if SHARED {
+            V::splat(planes.distance[triangle])
+        } else {
+            let at = |axis: usize| {
+                V::splat(corners[0][axis][triangle])
+                    - rays.origin(usize::from(self.axes[axis]) % 3, group)
+            };
+            normal[0] * at(0) + normal[1] * at(1) + normal[2] * at(2)
+        };
+        let (x, y, z) = (&self.x[group], &self.y[group], &self.z[group]);
+        let slope = normal[0] * V::load(x) + normal[1] * V::load(y) + normal[2];
+        let inverse = V::splat(1.0) / (edges.u + edges.v + edges.w);
+        [
+            distance / slope * V::load(z),
+            edges.v * inverse,
+            edges.w * inverse,
+        ]
+    }
+
+    /// The same as [`Query::offer`] for the hits of a group with one triangle, where `inside`.
+    #[inline(always)]
+    pub(super) fn offer<V: Lanes>(
+        &mut self,
+        rays: &PacketRays,
+        [t, b1, b2]: [V; 3],
+        inside: V::Mask,
+        (planes, primitive, (triangle, group)): (&Planes, u32, (usize, usize)),
+    ) {
+        let (t_min, t_max) = (rays.t_min::<V>(group), rays.t_max::<V>(group));
+        let possible = inside & t.gt(t_min) & t.lt(t_max) & t.le(V::load(&self.t[group]));
+        if V::bits(possible) == 0 {
+            return;
+        }
+        let (front, meets) = rays.enter::<V>(&planes.bounds, triangle, group);
+        let t = t.max(front);
+        let met = possible & meets & t.lt(t_max);
+        self.take([t, b1, b2], met, primitive, group);
+    }
+
+    /// Keeps the hits of a group with triangle `primitive` where `met` and better than the best so
+    /// far.
+    #[inline(always)]
+    fn take<V: Lanes>(&mut self, [t, b1, b2]: [V; 3], met: V::Mask, primitive: u32, group: usize) {
+        let best = V::load(&self.t[group]);
+        let better = met & t.lt(best);
+        let equal = V::bits(met & t.eq(best));
+        let keep = |old: &mut [f32; LANES], new: V| {
+            V::select(better, new, V::load(old)).store(old);
+        };
+        let limit = V::load(&self.limit[group]);
+        keep(&mut self.limit[group], t.min(limit));
+        keep(&mut self.t[group], t);
+        keep(&mut self.b1[group], b1);
+        keep(&mut self.b2[group], b2);
+        keep(
+            &mut self.primitive[group],
+            V::splat(f32::from_bits(primitive)),
+        );
+        if equal != 0 {
+            let (mut first, mut second) = ([0.0; LANES], [0.0; LANES]);
+            b1.store(&mut first);
+            b2.store(&mut second);
+            self.take_equal(group, equal, primitive, [first, second]);
+        }
+    }
+
+    /// At equal parameters the smaller id wins.
+    #[cold]
+    fn take_equal(
+        &mut self,
+        group: usize,
+        lanes: u32,
+        primitive: u32,
+        [b1, b2]: [[f32; LANES]; 2],
+    ) {
+        for lane in (0..LANES).filter(|lane| lanes >> lane & 1 == 1) {
+            let best = &mut self.primitive[group][lane];
+            if primitive < best.to_bits() {
+                *best = f32::from_bits(primitive);
+                self.b1[group][lane] = b1[lane];
+                self.b2[group][lane] = b2[lane];
+            }
+        }
+    }
+
+    /// The query of ray `i` by itself.
+    #[inline(always)]
+    pub(super) fn query(&self, i: usize) -> Query {
+        let at = |values: &PerRay| values[i / LANES % GROUPS][i % LANES];
+        let hit = Hit {
+            t: at(&self.t),
+            primitive: at(&self.primitive).to_bits(),
+            b1: at(&self.b1),
+            b2: at(&self.b2),
+        };
+        Query::new(
+            Shear::of(self.axes, [at(&self.x), at(&self.y), at(&self.z)]),
+            hit,
+        )
+    }
+
+    /// Puts the best hit of ray `i` back.
+    #[inline(always)]
+    pub(super) fn put(&mut self, rays: &PacketRays, i: usize, query: &Query) {
+        let (group, lane) = (i / LANES % GROUPS, i % LANES);
+        let (hit, end) = (&query.hit, rays.t_max_of(i));
+        self.limit[group][lane] = if hit.t < end { hit.t } else { end };
+        self.t[group][lane] = hit.t;
+        self.b1[group][lane] = hit.b1;
+        self.b2[group][lane] = hit.b2;
+        self.primitive[group][lane] = f32::from_bits(hit.primitive);
+    }
+
+    /// Lets ray `i` want nothing more.
+    #[inline(always)]
+    pub(super) fn drop_ray(&mut self, i: usize) {
+        self.limit[i / LANES % GROUPS][i % LANES] = f32::NEG_INFINITY;
+    }
+
+    /// Does something with ray `i` by itself.
+    pub(super) fn alone(
+        &mut self,
+        (rays, prepared): (&[Ray], &PacketRays),
+        i: usize,
+        test: impl FnOnce(&mut Query, (&Ray, &SlabRay)),
+    ) {
+        let mut query = self.query(i);
+        test(&mut query, (&rays[i], &prepared.slab(i)));
+        self.put(prepared, i, &query);
+    }
+}

@@ -1,0 +1,126 @@
+use glam::Vec4;
+
+use super::block::Block;
+use super::leaf::{LeafOrder, Query};
+use super::packet::{Corners, LANES, Packet, Planes};
+use crate::bvh::{BLOCK, GROUPS, Lanes, PacketLeaves, PacketRays, PerRay};
+use crate::math::Ray;
+
+impl PacketLeaves for LeafOrder {
+    type Packet = Packet;
+
+    #[inline(always)]
+    fn set_packet<V: Lanes>(&self, rays: &PacketRays, packet: &mut Packet) -> bool {
+        packet.set::<V>(rays)
+    }
+
+    #[inline(always)]
+    fn limit(packet: &Packet) -> &PerRay {
+        packet.limit()
+    }
+
+    #[inline(always)]
+    fn visit_packet<V: Lanes, const SHARED: bool>(
+        &self,
+        first: u32,
+        rays: (&[Ray], &PacketRays),
+        packet: &mut Packet,
+        active: u32,
+    ) -> u64 {
+        let mut count = 0;
+        for block in &self.blocks()[first as usize..] {
+            count += 1;
+            packet.visit::<V, SHARED>(rays, block, active);
+            if block.is_plain() {
+                break;
+            }
+            if block.has_spheres() {
+                let mut left = active;
+                while left != 0 {
+                    let i = left.trailing_zeros() as usize;
+                    left &= left - 1;
+                    packet.alone(rays, i, |query, ray| query.spheres(self, ray, block));
+                }
+            }
+            if !block.has_more() {
+                break;
+            }
+        }
+        count
+    }
+
+    #[inline(always)]
+    fn drop_ray(packet: &mut Packet, i: usize) {
+        packet.drop_ray(i);
+    }
+
+    #[inline(always)]
+    fn of_packet(&self, packet: &Packet, i: usize) -> Query {
+        packet.query(i)
+    }
+}
+
+impl Packet {
+    /// Tests the triangles of a block, at least for the `active` rays.
+    #[inline(always)]
+    fn visit<V: Lanes, const SHARED: bool>(
+        &mut self,
+        rays: (&[Ray], &PacketRays),
+        block: &Block,
+        active: u32,
+    ) {
+        let axes = self.axes();
+        let mut corners: Corners = [[[0.0; BLOCK]; 3]; 3];
+        for (corner, out) in corners.iter_mut().enumerate() {
+            for (out, axis) in out.iter_mut().zip(axes) {
+                let mut values = block.coordinate(corner, axis.into());
+                if SHARED {
+                    values -= Vec4::splat(rays.1.first_origin(axis.into()));
+                }
+                *out = values.to_array();
+            }
+        }
+        let mut planes = None;
+        for triangle in 0..block.len() {
+            for group in 0..GROUPS {
+                if active >> (LANES * group) & 0xff == 0 {
+                    continue;
+                }
+                let edges = self.edges::<V, SHARED>(rays.1, &corners, (triangle, group));
+                let zero = V::splat(0.0);
+                let least = edges.u.min(edges.v).min(edges.w);
+                let most = edges.u.max(edges.v).max(edges.w);
+                let inside = least.ge(zero) | most.le(zero);
+                let on_edge = edges.u.eq(zero) | edges.v.eq(zero) | edges.w.eq(zero);
+                if V::bits(inside | on_edge) == 0 {
+                    continue;
+                }
+                if V::bits(on_edge) != 0 {
+                    self.on_edge(rays, block, (triangle, group), V::bits(on_edge));
+                }
+                let inside = V::without(inside, on_edge);
+                let planes = planes.get_or_insert_with(|| Planes::new(block, axes, &corners));
+                let place = (triangle, group);
+                let hits = self.hits::<V, SHARED>(rays.1, (&corners, planes), &edges, place);
+                self.offer(rays.1, hits, inside, (planes, block.id(triangle), place));
+            }
+        }
+    }
+
+    /// The rays in `lanes` of a group, one at a time with exact edge functions.
+    #[cold]
+    #[inline(never)]
+    fn on_edge(
+        &mut self,
+        rays: (&[Ray], &PacketRays),
+        block: &Block,
+        (triangle, group): (usize, usize),
+        lanes: u32,
+    ) {
+        for lane in (0..LANES).filter(|lane| lanes >> lane & 1 == 1) {
+            self.alone(rays, LANES * group + lane, |query, ray| {
+                query.triangles_on_edges(ray, block, 1 << triangle);
+            });
+        }
+    }
+}
