@@ -39,7 +39,7 @@ const LARGEST_STRETCH: f64 = 1e3;
 const NO_STRETCH: f64 = 1e-6;
 
 /// For each instance of `scene` whether it shares its mesh. `was_moved` tells which geometries are
-/// shared from [`FEWEST_TRIANGLES`] on, because an edit has moved them.
+/// shared in any case, because an edit has moved them.
 pub(super) fn shared(
     scene: &Scene,
     emitters: &Emitters,
@@ -73,8 +73,8 @@ pub(super) fn shared(
         *shared = *shared && {
             let triangles = triangle_count(geometry);
             let copies = copies[&Arc::as_ptr(geometry)];
-            triangles >= FEWEST_TRIANGLES
-                && ((copies - 1) * triangles >= SAVED_TRIANGLES || was_moved(geometry))
+            let saves_enough = (copies - 1) * triangles >= SAVED_TRIANGLES;
+            (triangles >= FEWEST_TRIANGLES && saves_enough) || was_moved(geometry)
         };
     }
     shared

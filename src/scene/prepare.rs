@@ -78,7 +78,7 @@ pub fn prepare_with(
             progress("building the BVH", fraction)
         })?
         .with_instances(placed);
-    cache.end(scene);
+    cache.end(scene, normalization);
     let instance_names = scene
         .instances
         .iter()
@@ -119,7 +119,7 @@ fn assemble<'a>(
     cache: &mut PrepareCache,
     progress: &PrepareProgress<'_>,
 ) -> Option<Assembly<'a>> {
-    let mut assembly = Assembly::new(scene, settings.course_compatible);
+    let mut assembly = Assembly::new(scene, settings.course_compatible, cache);
     let rule = assembly.normal_rule;
     let was_moved = |geometry: &Arc<Geometry>| cache.was_moved(geometry);
     let shares = shared(
@@ -203,7 +203,7 @@ struct Assembly<'a> {
 }
 
 impl<'a> Assembly<'a> {
-    fn new(scene: &'a Scene, course_compatible: bool) -> Self {
+    fn new(scene: &'a Scene, course_compatible: bool, cache: &PrepareCache) -> Self {
         let emitters = emitters(scene, course_compatible);
         let (mut min, mut max) = scene
             .bounds()
@@ -226,7 +226,7 @@ impl<'a> Assembly<'a> {
             } else {
                 NormalRule::File
             },
-            normalization: Normalization::fit(min, max),
+            normalization: cache.normalization(min, max),
             emitters,
             shapes: Shapes::default(),
             owners: Vec::new(),

@@ -1,21 +1,29 @@
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use glam::DMat4;
+use glam::{DMat4, DVec3};
 
 use super::shading_normals::NormalRule;
 use super::shared_mesh::{MeshTables, share_mesh};
 use super::{Geometry, PreparedScene, Scene};
 use crate::bvh::BvhSettings;
 use crate::geometry::{Aggregate, Mesh, Shapes};
+use crate::math::Normalization;
+
+/// In a tracing space that is kept, half the size of the scene is above this (a new one has ½ to 1) …
+const SMALLEST_HALF: f64 = 0.25;
+/// … and no coordinate is larger.
+const FARTHEST_CORNER: f64 = 2.0;
 
 /// What one scene's preparation leaves for the next, so that an edit that moves objects builds no
 /// hierarchy again. Holds the memory of what the last scene used, and nothing else.
 ///
 /// A mesh that an edit has moved is shared from then on, even if it is used once: it gets a
 /// hierarchy of its own, which later moves leave as it is. So the picture of an edited scene may
-/// differ from that of the same scene, opened anew, by rounding.
+/// differ from that of the same scene, opened anew, by rounding. Its tracing space stays, too, as long
+/// as that is of about the scene's size: otherwise every hierarchy that is not shared would change
+/// when an object moves the bounds of the scene.
 #[derive(Debug, Default)]
 pub struct PrepareCache {
     meshes: HashMap<MeshKey, KeptMesh>,
@@ -24,6 +32,8 @@ pub struct PrepareCache {
     /// Geometry and place of each instance of the last scene.
     placed: Vec<(Arc<Geometry>, DMat4)>,
     moved: Vec<Arc<Geometry>>,
+    /// That of the last scene.
+    normalization: Option<Normalization>,
     counts: PrepareCounts,
 }
 
@@ -87,6 +97,9 @@ impl PrepareCache {
         for kept in self.meshes.values_mut() {
             kept.is_used = false;
         }
+        let used: HashSet<_> = (scene.geometries.iter()).map(Arc::as_ptr).collect();
+        self.moved
+            .retain(|moved| used.contains(&Arc::as_ptr(moved)));
         for ((geometry, place), instance) in self.placed.iter().zip(&scene.instances) {
             let is_same = Arc::ptr_eq(geometry, &scene.geometries[instance.geometry]);
             if is_same && *place != instance.world_from_object && !was_moved(&self.moved, geometry)
@@ -99,6 +112,20 @@ impl PrepareCache {
     /// True when an edit has moved `geometry`.
     pub(super) fn was_moved(&self, geometry: &Arc<Geometry>) -> bool {
         was_moved(&self.moved, geometry)
+    }
+
+    /// The tracing space of a scene with the bounds `min` and `max` in the file: that of the scene
+    /// before an edit if it is still good, else the one that fits.
+    pub(super) fn normalization(&self, min: DVec3, max: DVec3) -> Normalization {
+        let is_good = |known: &Normalization| {
+            let half = (max - min).max_element() * 0.5 * known.scale;
+            let corners = [min, max].map(|p| known.point_to_scene_f64(p).abs().max_element());
+            half > SMALLEST_HALF && corners.into_iter().all(|c| c < FARTHEST_CORNER)
+        };
+        let known = self.normalization.filter(|_| !self.moved.is_empty());
+        known
+            .filter(is_good)
+            .unwrap_or_else(|| Normalization::fit(min, max))
     }
 
     /// The tables and the hierarchy of `mesh`, which is `geometry`; `None` when `progress` breaks.
@@ -155,16 +182,13 @@ impl PrepareCache {
     }
 
     /// Forgets what `scene`, which is prepared now, does not use.
-    pub(super) fn end(&mut self, scene: &Scene) {
+    pub(super) fn end(&mut self, scene: &Scene, normalization: Normalization) {
+        self.normalization = Some(normalization);
         self.meshes.retain(|_, kept| kept.is_used);
         let geometry = |i: &super::Instance| Arc::clone(&scene.geometries[i.geometry]);
         self.placed = (scene.instances.iter())
             .map(|instance| (geometry(instance), instance.world_from_object))
             .collect();
-        let used: std::collections::HashSet<_> =
-            (scene.geometries.iter()).map(Arc::as_ptr).collect();
-        self.moved
-            .retain(|moved| used.contains(&Arc::as_ptr(moved)));
     }
 }
 

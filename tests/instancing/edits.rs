@@ -88,9 +88,19 @@ fn moving_an_object_again_builds_nothing() {
     let (edited, fresh) = (mean(&after), mean(&prepared(&third, Instancing::Never)));
     let difference = (edited - fresh).abs().max_element() / fresh.max_element();
     assert!(difference < 1e-4, "{difference:e}");
+    // Out of the box, which moves the bounds of the scene.
+    let fourth = moved(&third, 0, DVec3::new(1.4, 0.6, 0.2));
+    assert_ne!(fourth.bounds(), third.bounds());
+    next(&mut cache, &fourth);
+    assert_eq!(cache.counts(), built(1, 2, 2, 2));
+    // So far out that another tracing space is needed.
+    next(&mut cache, &moved(&third, 0, DVec3::X * 30.0));
+    assert_eq!(cache.counts(), built(1, 3, 3, 2));
+    next(&mut cache, &third);
+    assert_eq!(cache.counts(), built(1, 4, 4, 2));
     // Another object, then another kind of tree.
     next(&mut cache, &moved(&third, 1, HERE + DVec3::X * 0.1));
-    assert_eq!(cache.counts(), built(2, 3, 2, 1));
+    assert_eq!(cache.counts(), built(2, 5, 5, 2));
     let other = PrepareSettings {
         bvh: BvhSettings {
             leaf_size: 2,
@@ -104,7 +114,30 @@ fn moving_an_object_again_builds_nothing() {
         &mut cache,
         &|_, _| ControlFlow::Continue(()),
     );
-    assert_eq!(cache.counts(), built(4, 4, 2, 1));
+    assert_eq!(cache.counts(), built(4, 6, 5, 2));
+}
+
+#[test]
+fn moving_something_small_leaves_the_rest_as_it_is() {
+    let mut cache = PrepareCache::default();
+    let mut builder = cornell_box("a die and a ball");
+    let grey = builder.diffuse("grey", Rgb::splat(0.6));
+    place(&mut builder, ball(40, false), &[grey], &[at(HERE)]);
+    place(
+        &mut builder,
+        ball(2, false),
+        &[grey],
+        &[at(-HERE + DVec3::Y)],
+    );
+    let first = builder.finish();
+    next(&mut cache, &first);
+    next(&mut cache, &moved(&first, 0, DVec3::new(0.3, 0.6, 0.2)));
+    let before = cache.counts();
+    next(&mut cache, &moved(&first, 0, DVec3::new(0.2, 0.6, 0.2)));
+    let after = cache.counts();
+    let built = |counts: PrepareCounts| (counts.meshes_built, counts.own_built);
+    assert_eq!(built(after), built(before));
+    assert_eq!(after.own_reused, before.own_reused + 1);
 }
 
 #[test]
@@ -127,8 +160,13 @@ fn another_scene_takes_nothing_over_and_a_stopped_one_loses_nothing() {
     let before = cache.counts();
     next(&mut cache, &second);
     assert_eq!(cache.counts().meshes_built, before.meshes_built);
-    let other = two_balls();
-    assert_eq!(next(&mut cache, &other).instance_stats().instances, 0);
+    // Somewhat larger, so that the tracing space could be kept.
+    let mut other = two_balls();
+    other.instances.last_mut().expect("some").world_from_object = at(DVec3::X * 1.2);
+    let opened = next(&mut cache, &other);
+    assert_eq!(opened.instance_stats().instances, 0);
+    let anew = next(&mut PrepareCache::default(), &other);
+    assert_eq!(opened.normalization(), anew.normalization());
     let before = cache.counts();
     next(&mut cache, &second);
     assert_eq!(
