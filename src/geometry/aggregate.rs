@@ -49,7 +49,7 @@ pub struct Aggregate {
     /// What rays can meet besides; `None` for most.
     instances: Option<Arc<Instances>>,
     leaf_size: u32,
-    is_refined: bool,
+    pub(super) is_refined: bool,
     isa: Isa,
 }
 

@@ -4,7 +4,7 @@ use crate::bvh::{Leaves, SlabRay, Work};
 use crate::math::{Isa, Ray};
 
 /// Instances that are found at once for a ray. Most rays meet fewer, or something in one of them.
-const MOST: usize = 8;
+const MOST: usize = 16;
 
 /// The nearest instances whose boxes a ray meets.
 #[derive(Clone, Copy, Debug)]
@@ -134,7 +134,7 @@ impl Batch<'_> {
     fn goes_on<const ANY: bool>(&self, i: usize, rank: usize) -> bool {
         let best = &self.best[i];
         let near = self.nearest[i].get(rank);
-        near.is_some_and(|(front, _)| front <= best.t) && !(ANY && !best.is_miss())
+        (!ANY || best.is_miss()) && near.is_some_and(|(front, _)| front <= best.t)
     }
 
     /// Meets the instances of one rank.

@@ -27,8 +27,15 @@ impl Aggregate {
                 return None;
             }
         }
+        self.is_refined = false;
         let leaves = Arc::make_mut(&mut self.leaves);
         Some(leaves.refit(Arc::make_mut(&mut self.bvh), &self.shapes))
+    }
+
+    /// Nodes and blocks that a random ray is expected to visit, by the surface-area heuristic.
+    pub fn expected_visits(&self) -> f64 {
+        let (nodes, blocks) = self.bvh.expected_visits();
+        nodes + blocks
     }
 }
 

@@ -38,14 +38,12 @@ const LARGEST_STRETCH: f64 = 1e3;
 /// Relative difference of lengths and angles below which a placement does not stretch.
 const NO_STRETCH: f64 = 1e-6;
 
-/// For each instance of `scene` whether it shares its mesh. `was_moved` tells which geometries are
-/// shared from [`FEWEST_TRIANGLES`] on, because an edit has moved them.
+/// For each instance of `scene` whether it shares its mesh.
 pub(super) fn shared(
     scene: &Scene,
     emitters: &Emitters,
     rule: NormalRule,
     instancing: Instancing,
-    was_moved: &dyn Fn(&Arc<Geometry>) -> bool,
 ) -> Vec<bool> {
     if instancing == Instancing::Never {
         return vec![false; scene.instances.len()];
@@ -73,8 +71,8 @@ pub(super) fn shared(
         *shared = *shared && {
             let triangles = triangle_count(geometry);
             let copies = copies[&Arc::as_ptr(geometry)];
-            triangles >= FEWEST_TRIANGLES
-                && ((copies - 1) * triangles >= SAVED_TRIANGLES || was_moved(geometry))
+            let saves_enough = (copies - 1) * triangles >= SAVED_TRIANGLES;
+            triangles >= FEWEST_TRIANGLES && saves_enough
         };
     }
     shared

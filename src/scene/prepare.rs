@@ -53,7 +53,7 @@ pub fn prepare_with(
     cache: &mut PrepareCache,
     progress: &PrepareProgress<'_>,
 ) -> Option<PreparedScene> {
-    cache.begin(scene);
+    cache.begin();
     let assembly = assemble(scene, settings, cache, progress)?;
     let Assembly {
         normalization,
@@ -81,7 +81,7 @@ pub fn prepare_with(
         })?
         .with_instances(placed)
         .with_isa(settings.isa.unwrap_or_else(Isa::best));
-    cache.end(scene);
+    cache.end();
     let instance_names = scene
         .instances
         .iter()
@@ -124,14 +124,7 @@ fn assemble<'a>(
 ) -> Option<Assembly<'a>> {
     let mut assembly = Assembly::new(scene, settings.course_compatible);
     let rule = assembly.normal_rule;
-    let was_moved = |geometry: &Arc<Geometry>| cache.was_moved(geometry);
-    let shares = shared(
-        scene,
-        &assembly.emitters,
-        rule,
-        settings.instancing,
-        &was_moved,
-    );
+    let shares = shared(scene, &assembly.emitters, rule, settings.instancing);
     for (index, (instance, shares)) in scene.instances.iter().zip(shares).enumerate() {
         let fraction = index as f32 / scene.instances.len() as f32;
         progress("placing geometry", fraction).continue_value()?;

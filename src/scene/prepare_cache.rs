@@ -2,28 +2,23 @@ use std::collections::HashMap;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use glam::DMat4;
-
 use super::shading_normals::NormalRule;
 use super::shared_mesh::{MeshTables, share_mesh};
-use super::{Geometry, PreparedScene, Scene};
+use super::{Geometry, PreparedScene};
 use crate::bvh::BvhSettings;
 use crate::geometry::{Aggregate, Mesh, Shapes};
 
-/// What one scene's preparation leaves for the next, so that an edit that moves objects builds no
-/// hierarchy again. Holds the memory of what the last scene used, and nothing else.
-///
-/// A mesh that an edit has moved is shared from then on, even if it is used once: it gets a
-/// hierarchy of its own, which later moves leave as it is. So the picture of an edited scene may
-/// differ from that of the same scene, opened anew, by rounding.
+/// A hierarchy that fits moved shapes and costs rays up to this much more than before is kept.
+const MOST_GROWTH: f64 = 1.3;
+
+/// What one scene's preparation leaves for the next, so that an edit builds as little as possible: a
+/// shared mesh keeps its hierarchy wherever its instances go, and what is not shared keeps its own,
+/// fitted to the vertices where these have moved. Never changes a hit. Holds the memory of what the
+/// last scene used, and nothing else.
 #[derive(Debug, Default)]
 pub struct PrepareCache {
     meshes: HashMap<MeshKey, KeptMesh>,
-    /// The hierarchy over everything that is not shared.
-    own: Option<(BvhSettings, Aggregate)>,
-    /// Geometry and place of each instance of the last scene.
-    placed: Vec<(Arc<Geometry>, DMat4)>,
-    moved: Vec<Arc<Geometry>>,
+    own: Option<KeptOwn>,
     counts: PrepareCounts,
 }
 
@@ -38,6 +33,17 @@ pub struct PrepareCounts {
     pub own_built: u64,
     /// Hierarchies over what is not shared that scenes took over from the one before.
     pub own_reused: u64,
+    /// Hierarchies over what is not shared that were fitted to moved vertices.
+    pub own_refitted: u64,
+}
+
+/// The hierarchy over everything that is not shared.
+#[derive(Debug)]
+struct KeptOwn {
+    settings: BvhSettings,
+    tree: Aggregate,
+    /// Nodes and blocks that a ray was expected to visit when it was built.
+    built_cost: f64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -65,8 +71,9 @@ impl PrepareCache {
 
     /// Takes over the hierarchies of `scene`, a refined form of the last one that was prepared.
     pub fn adopt(&mut self, scene: &PreparedScene) {
-        if let Some((_, own)) = &mut self.own {
-            *own = scene.aggregate.without_instances();
+        if let Some(own) = &mut self.own {
+            own.tree = scene.aggregate.without_instances();
+            own.built_cost = own.tree.expected_visits();
         }
         let Some(instances) = scene.aggregate.instances() else {
             return;
@@ -82,23 +89,11 @@ impl PrepareCache {
         }
     }
 
-    /// Finds out which geometries `scene` has moved.
-    pub(super) fn begin(&mut self, scene: &Scene) {
+    /// Begins to prepare another scene.
+    pub(super) fn begin(&mut self) {
         for kept in self.meshes.values_mut() {
             kept.is_used = false;
         }
-        for ((geometry, place), instance) in self.placed.iter().zip(&scene.instances) {
-            let is_same = Arc::ptr_eq(geometry, &scene.geometries[instance.geometry]);
-            if is_same && *place != instance.world_from_object && !was_moved(&self.moved, geometry)
-            {
-                self.moved.push(Arc::clone(geometry));
-            }
-        }
-    }
-
-    /// True when an edit has moved `geometry`.
-    pub(super) fn was_moved(&self, geometry: &Arc<Geometry>) -> bool {
-        was_moved(&self.moved, geometry)
     }
 
     /// The tables and the hierarchy of `mesh`, which is `geometry`; `None` when `progress` breaks.
@@ -139,35 +134,47 @@ impl PrepareCache {
         bvh: BvhSettings,
         progress: &(dyn Fn(f32) -> ControlFlow<()> + Sync),
     ) -> Option<Aggregate> {
-        let kept = self.own.take();
-        let own = match kept.filter(|(built, own)| *built == bvh && *own.shapes() == shapes) {
-            Some((_, own)) => {
-                self.counts.own_reused += 1;
-                own
-            }
+        let kept = self.own.take().filter(|own| own.settings == bvh);
+        let own = match kept.and_then(|own| self.keep(own, &shapes)) {
+            Some(own) => own,
             None => {
                 self.counts.own_built += 1;
-                Aggregate::build_with(shapes, bvh, progress)?
+                let tree = Aggregate::build_with(shapes, bvh, progress)?;
+                KeptOwn {
+                    settings: bvh,
+                    built_cost: tree.expected_visits(),
+                    tree,
+                }
             }
         };
-        self.own = Some((bvh, own.clone()));
-        Some(own)
+        let tree = own.tree.clone();
+        self.own = Some(own);
+        Some(tree)
     }
 
-    /// Forgets what `scene`, which is prepared now, does not use.
-    pub(super) fn end(&mut self, scene: &Scene) {
+    /// `own` for `shapes`, fitted if they have moved; `None` if they are others or have moved too far.
+    fn keep(&mut self, own: KeptOwn, shapes: &Shapes) -> Option<KeptOwn> {
+        let old = own.tree.shapes();
+        if old.triangles != shapes.triangles || old.spheres != shapes.spheres {
+            return None;
+        }
+        if old.positions == shapes.positions {
+            self.counts.own_reused += 1;
+            return Some(own);
+        }
+        if old.positions.len() != shapes.positions.len() {
+            return None;
+        }
+        let mut tree = own.tree;
+        let cost = tree.refit(shapes.positions.clone())?;
+        (cost <= own.built_cost * MOST_GROWTH).then(|| {
+            self.counts.own_refitted += 1;
+            KeptOwn { tree, ..own }
+        })
+    }
+
+    /// Forgets what the scene that is prepared now does not use.
+    pub(super) fn end(&mut self) {
         self.meshes.retain(|_, kept| kept.is_used);
-        let geometry = |i: &super::Instance| Arc::clone(&scene.geometries[i.geometry]);
-        self.placed = (scene.instances.iter())
-            .map(|instance| (geometry(instance), instance.world_from_object))
-            .collect();
-        let used: std::collections::HashSet<_> =
-            (scene.geometries.iter()).map(Arc::as_ptr).collect();
-        self.moved
-            .retain(|moved| used.contains(&Arc::as_ptr(moved)));
     }
-}
-
-fn was_moved(moved: &[Arc<Geometry>], geometry: &Arc<Geometry>) -> bool {
-    moved.iter().any(|moved| Arc::ptr_eq(moved, geometry))
 }

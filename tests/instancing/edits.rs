@@ -1,18 +1,13 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
 
 use glam::{DMat4, DVec3};
-use softbox::bvh::BvhSettings;
 use softbox::color::Rgb;
 use softbox::scene::{
-    Instancing, PrepareCache, PrepareCounts, PrepareSettings, PreparedScene, Scene, cornell_box,
-    prepare_with,
+    PrepareCache, PrepareCounts, PrepareSettings, PreparedScene, Scene, cornell_box, prepare_with,
 };
-use softbox::session::{RenderJob, RenderSession, SessionOptions};
-use softbox::settings::{RenderSettings, StopRule};
 
-use crate::scenes::{ball, place, prepared, samples, view};
+use crate::scenes::{ball, place, samples, view};
 
 const HERE: DVec3 = DVec3::new(0.2, 0.5, 0.1);
 
@@ -52,141 +47,129 @@ fn next(cache: &mut PrepareCache, scene: &Scene) -> PreparedScene {
         .expect("nothing asks it to stop")
 }
 
+/// Bits of the samples of a small picture.
+fn picture(scene: &PreparedScene) -> Vec<[u32; 3]> {
+    let camera = view(DVec3::new(0.0, 0.75, 4.8), DVec3::new(0.0, 0.75, 0.0), 31.0);
+    let (radiance, _) = samples(scene, &camera, (40, 30), 4);
+    radiance
+        .iter()
+        .map(|c| c.to_array().map(f32::to_bits))
+        .collect()
+}
+
+/// `scene` prepared after others, and that it gives the picture of `scene` prepared anew.
+fn next_is_like_new(cache: &mut PrepareCache, scene: &Scene) {
+    let edited = next(cache, scene);
+    let new = next(&mut PrepareCache::default(), scene);
+    assert_eq!(edited.normalization(), new.normalization());
+    assert!(picture(&edited) == picture(&new), "the same bits");
+}
+
 #[test]
-fn moving_an_object_again_builds_nothing() {
+fn an_edit_keeps_or_fits_the_tree_and_a_new_mesh_builds_one() {
     let mut cache = PrepareCache::default();
-    let first = two_balls();
-    assert_eq!(next(&mut cache, &first).instance_stats().instances, 0);
-    let built = |meshes_built, own_built, meshes_reused, own_reused| PrepareCounts {
-        meshes_built,
-        meshes_reused,
+    let own = |own_built, own_reused, own_refitted| PrepareCounts {
         own_built,
         own_reused,
+        own_refitted,
+        ..PrepareCounts::default()
     };
-    assert_eq!(cache.counts(), built(0, 1, 0, 0));
-    // The first move makes the object an instance.
-    let second = moved(&first, 0, DVec3::new(0.3, 0.6, 0.2));
-    let before = next(&mut cache, &second);
-    assert_eq!(before.instance_stats().instances, 1);
-    assert_eq!(cache.counts(), built(1, 2, 0, 0));
-    // From then on nothing is built.
-    let third = moved(&second, 0, DVec3::new(-0.3, 0.9, 0.2));
-    let after = next(&mut cache, &third);
-    assert_eq!(cache.counts(), built(1, 2, 1, 1));
+    let first = two_balls();
+    next(&mut cache, &first);
+    assert_eq!(cache.counts(), own(1, 0, 0));
+    // Another colour.
+    let mut painted = first.clone();
+    painted.materials[0].name = "painted".to_owned();
+    next_is_like_new(&mut cache, &painted);
+    assert_eq!(cache.counts(), own(1, 1, 0));
+    // Somewhere else, then out of the box, which moves the bounds of the scene.
+    next_is_like_new(&mut cache, &moved(&first, 0, DVec3::new(0.3, 0.6, 0.2)));
+    assert_eq!(cache.counts(), own(1, 1, 1));
+    next_is_like_new(&mut cache, &moved(&first, 0, DVec3::new(1.1, 0.6, 0.2)));
+    assert_eq!(cache.counts(), own(1, 1, 2));
+    // Another mesh, then another kind of tree.
+    let mut builder = cornell_box("another ball");
+    let grey = builder.diffuse("grey", Rgb::splat(0.6));
+    place(&mut builder, ball(10, false), &[grey], &[at(HERE)]);
+    next_is_like_new(&mut cache, &builder.finish());
+    assert_eq!(cache.counts(), own(2, 1, 2));
+}
+
+#[test]
+fn a_tree_that_moves_have_spoilt_is_built_anew() {
+    let mut cache = PrepareCache::default();
+    let mut builder = cornell_box("many balls");
+    let grey = builder.diffuse("grey", Rgb::splat(0.6));
+    let place_at = |i: usize| {
+        at(DVec3::new(
+            (i % 5) as f64 * 0.3 - 0.6,
+            (i / 5) as f64 * 0.3,
+            0.0,
+        ))
+    };
+    for i in 0..25 {
+        place(&mut builder, ball(8, false), &[grey], &[place_at(i)]);
+    }
+    let first = builder.finish();
+    next(&mut cache, &first);
+    let mut shuffled = first.clone();
+    let balls = shuffled.instances.len() - 25;
+    for i in 0..25 {
+        shuffled.instances[balls + i].world_from_object = place_at(i * 7 % 25);
+    }
+    next_is_like_new(&mut cache, &shuffled);
+    assert_eq!(
+        (cache.counts().own_built, cache.counts().own_refitted),
+        (2, 0)
+    );
+}
+
+#[test]
+fn moving_a_copy_builds_nothing() {
+    let mut cache = PrepareCache::default();
+    let mut builder = cornell_box("copies");
+    let grey = builder.diffuse("grey", Rgb::splat(0.6));
+    let places: Vec<_> = (0..400)
+        .map(|i| {
+            at(DVec3::new(
+                (i % 20) as f64 * 0.1 - 1.0,
+                (i / 20) as f64 * 0.1,
+                0.0,
+            ))
+        })
+        .collect();
+    place(&mut builder, ball(20, false), &[grey], &places);
+    let first = builder.finish();
+    let before = next(&mut cache, &first);
+    assert_eq!(before.instance_stats().instances, 400);
+    let after = next(&mut cache, &moved(&first, 3, DVec3::new(0.0, 0.5, 0.5)));
     let tree = |scene: &PreparedScene| {
-        let instances = scene.aggregate().instances().expect("one");
+        let instances = scene.aggregate().instances().expect("some");
         Arc::clone(instances.list()[0].mesh())
     };
     assert!(Arc::ptr_eq(&tree(&before), &tree(&after)));
     assert!(std::ptr::eq(before.shapes(), after.shapes()));
-    // The same picture as from scratch.
-    let camera = view(DVec3::new(0.0, 0.75, 4.8), DVec3::new(0.0, 0.75, 0.0), 31.0);
-    let mean = |scene: &PreparedScene| {
-        let (radiance, _) = samples(scene, &camera, (40, 30), 16);
-        radiance.iter().sum::<Rgb>() / radiance.len() as f32
+    let expected = PrepareCounts {
+        meshes_built: 1,
+        meshes_reused: 1,
+        own_built: 1,
+        own_reused: 1,
+        own_refitted: 0,
     };
-    let (edited, fresh) = (mean(&after), mean(&prepared(&third, Instancing::Never)));
-    let difference = (edited - fresh).abs().max_element() / fresh.max_element();
-    assert!(difference < 1e-4, "{difference:e}");
-    // Another object, then another kind of tree.
-    next(&mut cache, &moved(&third, 1, HERE + DVec3::X * 0.1));
-    assert_eq!(cache.counts(), built(2, 3, 2, 1));
-    let other = PrepareSettings {
-        bvh: BvhSettings {
-            leaf_size: 2,
-            ..BvhSettings::default()
-        },
-        ..PrepareSettings::default()
-    };
-    prepare_with(
-        &third,
-        &other,
-        &mut cache,
-        &|_, _| ControlFlow::Continue(()),
-    );
-    assert_eq!(cache.counts(), built(4, 4, 2, 1));
+    assert_eq!(cache.counts(), expected);
 }
 
 #[test]
-fn another_scene_takes_nothing_over_and_a_stopped_one_loses_nothing() {
+fn a_stopped_preparation_loses_no_shared_mesh() {
     let mut cache = PrepareCache::default();
     let first = two_balls();
     next(&mut cache, &first);
-    let second = moved(&first, 0, HERE);
-    next(&mut cache, &second);
     let stopped = prepare_with(
-        &second,
+        &moved(&first, 0, HERE),
         &PrepareSettings::default(),
         &mut cache,
-        &|stage, _| match stage {
-            "placing geometry" => ControlFlow::Break(()),
-            _ => ControlFlow::Continue(()),
-        },
+        &|_, _| ControlFlow::Break(()),
     );
     assert!(stopped.is_none());
-    let before = cache.counts();
-    next(&mut cache, &second);
-    assert_eq!(cache.counts().meshes_built, before.meshes_built);
-    let other = two_balls();
-    assert_eq!(next(&mut cache, &other).instance_stats().instances, 0);
-    let before = cache.counts();
-    next(&mut cache, &second);
-    assert_eq!(
-        cache.counts().meshes_built,
-        before.meshes_built,
-        "its moves are forgotten"
-    );
-}
-
-#[test]
-fn a_session_keeps_the_trees_of_what_moves() {
-    let session = RenderSession::new(SessionOptions { interactive: false }, || ());
-    let render = |scene: &Scene| {
-        session.request(RenderJob {
-            scene: Arc::new(scene.clone()),
-            camera: view(DVec3::new(0.0, 0.75, 4.8), DVec3::new(0.0, 0.75, 0.0), 31.0),
-            settings: RenderSettings {
-                width: 8,
-                height: 6,
-                stop: StopRule {
-                    samples_per_pixel: Some(1),
-                    ..StopRule::default()
-                },
-                ..RenderSettings::default()
-            },
-        });
-        let started = Instant::now();
-        loop {
-            let ended = session.status().is_finished();
-            if let Some(prepared) = session.prepared().filter(|_| ended) {
-                let last = scene.instances.last().expect("some").world_from_object;
-                let center = last.transform_point3(DVec3::ZERO);
-                if is_shown(&prepared, center) {
-                    return prepared;
-                }
-            }
-            assert!(started.elapsed() < Duration::from_secs(60), "it ends");
-            std::thread::sleep(Duration::from_millis(1));
-        }
-    };
-    let first = two_balls();
-    render(&first);
-    let second = moved(&first, 0, DVec3::new(0.3, 0.6, 0.2));
-    let before = render(&second);
-    let after = render(&moved(&second, 0, DVec3::new(-0.3, 0.7, 0.2)));
-    let tree = |scene: &PreparedScene| {
-        let instances = scene.aggregate().instances().expect("one");
-        Arc::clone(instances.list()[0].mesh())
-    };
-    assert!(!Arc::ptr_eq(&before, &after));
-    assert!(Arc::ptr_eq(&tree(&before), &tree(&after)));
-    assert!(std::ptr::eq(before.shapes(), after.shapes()));
-}
-
-/// True when the last object of `scene` is the one around `center`.
-fn is_shown(scene: &PreparedScene, center: DVec3) -> bool {
-    let last = scene.aggregate().primitive_count() - 1;
-    let vertex = scene.aggregate().vertices(last as u32)[0];
-    let there = vertex / scene.normalization().scale + scene.normalization().center;
-    there.distance(center) < 0.25
+    next_is_like_new(&mut cache, &first);
 }

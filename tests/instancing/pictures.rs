@@ -77,10 +77,10 @@ fn pictures_with_instances_are_those_with_copies() {
         .collect();
     apart.sort_by(f32::total_cmp);
     let typical = apart[apart.len() * 9 / 10];
-    assert!(difference < 1e-4, "means differ by {difference:e}");
-    assert!(other < 2e-3, "{other:e} of the paths go elsewhere");
+    assert!(difference < 1e-5, "means differ by {difference:e}");
+    assert!(other < 1e-4, "{other:e} of the paths go elsewhere");
     assert!(
-        typical < 1e-4,
+        typical < 1e-5,
         "nine of ten pixels differ by less than {typical:e}"
     );
 }
