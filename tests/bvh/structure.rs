@@ -36,7 +36,7 @@ fn build(boxes: &[Aabb], settings: &BvhSettings, quality: BvhQuality) -> (Bvh, L
     build_with(boxes, settings, quality, &|_| ControlFlow::Continue(())).expect("not stopped")
 }
 
-const QUALITIES: [BvhQuality; 2] = [BvhQuality::Standard, BvhQuality::High];
+const QUALITIES: [BvhQuality; 3] = [BvhQuality::Fast, BvhQuality::Standard, BvhQuality::High];
 
 /// Kinds with the qualities that make a difference.
 fn trees() -> impl Iterator<Item = (BvhKind, BvhQuality)> {
@@ -243,6 +243,24 @@ fn hits_do_not_depend_on_the_quality() {
     }
 }
 
+#[test]
+fn equal_and_absurd_boxes_have_a_tree_of_every_quality() {
+    let one = Aabb::from_points([glam::Vec3::ZERO, glam::Vec3::ONE]);
+    let huge = Aabb::from_points([glam::Vec3::splat(-3e38), glam::Vec3::splat(3e38)]);
+    let mut mixed = vec![one; 900];
+    mixed.extend([huge, Aabb::EMPTY, huge]);
+    mixed.extend(vec![one; 100]);
+    for quality in QUALITIES {
+        let (bvh, blocks) = build(&mixed, &settings(BvhKind::Sah, 4), quality);
+        assert_eq!((bvh.primitive_count(), bvh.excluded()), (1_002, 1));
+        assert!(bvh.stats().max_depth <= 100);
+        let mut ids = blocks.concat();
+        ids.retain(|&id| id != NO_PRIMITIVE);
+        ids.sort_unstable();
+        assert!(ids.into_iter().eq((0..1_003).filter(|&id| id != 901)));
+    }
+}
+
 /// A fine sphere in a box of twelve large triangles.
 #[test]
 fn large_triangles_around_a_mesh_do_not_spoil_its_boxes() {
@@ -271,6 +289,8 @@ fn a_better_quality_expects_less_work_and_says_so() {
     };
     let (standard, high) = (cost(BvhQuality::Standard), cost(BvhQuality::High));
     assert!(high < 0.99 * standard, "{high} {standard}");
+    let fast = cost(BvhQuality::Fast);
+    assert!(fast < 1.3 * standard, "{fast} {standard}");
     let one_leaf = Bvh::build(&boxes, &settings(BvhKind::None, 4)).0.stats();
     assert_eq!(
         (one_leaf.expected_nodes, one_leaf.expected_blocks),

@@ -72,7 +72,7 @@ pub(super) fn build(
     mut range: Range<'_>,
     nodes: &mut [BinaryNode],
     first: u32,
-    (rule, depth): (&Rule, usize),
+    (rule, depth): (&Rule<'_>, usize),
     watch: &Watch<'_>,
 ) -> Option<()> {
     let count = range.len();

@@ -25,7 +25,7 @@ pub(super) struct Member<'a> {
 impl<'a> Family<'a> {
     /// Splits `range` until there are eight children or only leaves: the one with the largest box
     /// first, because rays meet it most often (but see [`eagerness`]). A single member is a leaf.
-    pub(super) fn of(range: Range<'a>, rule: &Rule, depth: Depth) -> Self {
+    pub(super) fn of(range: Range<'a>, rule: &Rule<'_>, depth: Depth) -> Self {
         let mut members = Vec::with_capacity(WIDTH);
         members.push(Member {
             is_leaf: rule.is_leaf(range.len()),

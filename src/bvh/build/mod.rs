@@ -1,15 +1,19 @@
 //! Makes a tree of boxes, top down: ranges of primitives are split by the surface-area heuristic
-//! straight into nodes of eight children; there is no binary tree in between.
+//! straight into nodes of eight children; there is no binary tree in between. High quality makes one
+//! and improves it; fast builds sort primitives along a curve and split only what is large.
 
 mod binary;
 mod bins;
 mod chunk;
+mod curve;
 mod family;
+mod fast;
 mod high;
 mod optimal;
 mod primitive;
 mod range;
 mod reinsert;
+mod rows;
 mod watch;
 mod wide;
 
@@ -92,12 +96,20 @@ fn build(
         refs.retain(|r| !r.is_nothing());
     }
     let is_high = settings.quality == BvhQuality::High && settings.kind == BvhKind::Sah;
-    let work = if is_high { high::work } else { |n| n };
+    let is_fast = settings.quality == BvhQuality::Fast && settings.kind == BvhKind::Sah;
+    let work = match (is_high, is_fast) {
+        (true, _) => high::work,
+        (_, true) => fast::work,
+        _ => |n| n,
+    };
     let watch = Watch::new(work(refs.len()), progress);
     watch.advance(0)?;
     let mut whole = Chunk::default();
     if refs.is_empty() {
         return Some(Some(whole));
+    }
+    if is_fast {
+        return fast::build(refs, settings.leaf_size, &watch).map(Some);
     }
     let nothing = (0..refs.len()).into_par_iter();
     let mut spare: Vec<_> = nothing.map(|_| PrimitiveRef::NOTHING).collect();

@@ -47,7 +47,8 @@ impl Bounds {
 /// which processors are slow with.
 pub(super) const NORMAL: u32 = 1 << 30;
 
-/// A primitive on its way into the tree: its bounds, and its id in the fourth lane of the minimum.
+/// A primitive on its way into the tree: its bounds, and its id in the fourth lane of the minimum;
+/// or several with ids in a row, one less than their number in the fourth lane of the maximum.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
 pub(super) struct PrimitiveRef {
@@ -72,6 +73,17 @@ impl PrimitiveRef {
         }
     }
 
+    /// `count` things in a row, the first of number `first`, that stay together; their bounds.
+    pub(super) fn run(first: u32, count: usize, bounds: &Bounds) -> Self {
+        let mut run = Self {
+            min: bounds.min,
+            max: bounds.max,
+        };
+        run.min.w = f32::from_bits(first ^ NORMAL);
+        run.max.w = count as f32 - 1.0;
+        run
+    }
+
     #[inline(always)]
     pub(super) fn bounds(&self) -> Bounds {
         Bounds {
@@ -87,6 +99,16 @@ impl PrimitiveRef {
     /// Index among the boxes given to the build.
     pub(super) fn id(&self) -> u32 {
         self.min.w.to_bits() ^ NORMAL
+    }
+
+    /// The id and those behind it that belong to the same run.
+    pub(super) fn ids(&self) -> std::ops::Range<u32> {
+        self.id()..self.id() + self.count() as u32
+    }
+
+    /// Number of primitives.
+    pub(super) fn count(&self) -> usize {
+        self.max.w as usize + 1
     }
 
     /// The middle; halved before the sum, which then cannot overflow.
@@ -149,6 +171,18 @@ mod tests {
         }
         let area = Extents::of(&[PrimitiveRef::new(7, &bounds)]).bounds;
         assert_eq!(area.half_area(), bounds.half_area());
+    }
+
+    #[test]
+    fn a_run_gives_its_members_back() {
+        let bounds = Extents::of(&[]).bounds;
+        for (first, count) in [(0, 1), (7, 4), ((1 << 31) - 9, 8)] {
+            let run = PrimitiveRef::run(first, count, &bounds);
+            assert_eq!(run.ids(), first..first + count as u32);
+            assert_eq!(run.count(), count);
+        }
+        let single = PrimitiveRef::new(5, &Aabb::from_points([Vec3::ZERO]));
+        assert_eq!((single.ids(), single.count()), (5..6, 1));
     }
 
     #[test]
