@@ -49,7 +49,7 @@ struct Options {
         long,
         value_name = "NAME,NAME",
         value_delimiter = ',',
-        default_value = "embree,ours,embree-packets,embree-robust,obvhs-bvh2,obvhs-cwbvh,bvh"
+        default_value = "embree,ours,ours-high,embree-packets,embree-robust,obvhs-bvh2,obvhs-cwbvh,bvh"
     )]
     only: Vec<String>,
     #[command(flatten)]
@@ -98,7 +98,8 @@ fn main() -> anyhow::Result<()> {
 /// The wanted systems, in the order in which they were asked for.
 fn systems(options: &Options, out: &mut impl Write) -> anyhow::Result<Vec<System>> {
     let isa = options.protocol.isa.unwrap_or_else(Isa::best);
-    let mut all = vec![ours(isa), bvh_crate::system()];
+    let mut all = ours(isa);
+    all.push(bvh_crate::system());
     all.extend(obvhs_crate::systems());
     let of_environment = std::env::var("SOFTBOX_EMBREE").ok();
     let path = options.embree.as_ref().or(of_environment.as_ref());

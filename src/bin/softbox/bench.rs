@@ -14,7 +14,7 @@ pub(crate) fn run(args: &BenchArgs) -> Result<(), Failure> {
         scenes.extend(SCENES);
     }
     let isa = args.protocol.isa.unwrap_or_else(Isa::best);
-    let systems = [ours(isa)];
+    let systems = ours(isa);
     let mut results: Vec<SceneResult> = Vec::new();
     for name in scenes {
         let subject = subject(name).map_err(Status::Scene.because())?;

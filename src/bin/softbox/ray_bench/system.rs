@@ -1,8 +1,9 @@
 use std::fmt;
+use std::ops::ControlFlow;
 
 use clap::ValueEnum;
 use rayon::ThreadPoolBuilder;
-use softbox::bvh::BvhSettings;
+use softbox::bvh::{BvhQuality, BvhSettings};
 use softbox::geometry::{Aggregate, Hit, Shapes, TraceCounts};
 use softbox::math::{Isa, Ray};
 
@@ -67,15 +68,32 @@ impl System {
     }
 }
 
-/// The tracer of the library, as a render with `isa` uses it.
-pub(crate) fn ours(isa: Isa) -> System {
-    System::new("ours", Kind::value_variants(), move |shapes, threads| {
-        let shapes = shapes.clone();
-        Box::new(on_threads(threads, move || -> Box<dyn Tracer> {
-            let built = Aggregate::build(shapes, BvhSettings::default());
-            Box::new(Ours(built.with_isa(isa)))
-        }))
-    })
+/// The tracer of the library, as a render with `isa` uses it: with the tree that it starts with, with
+/// the one it goes on with, and with the one of large scenes that are edited.
+pub(crate) fn ours(isa: Isa) -> Vec<System> {
+    let one = |name, quality| {
+        System::new(name, Kind::value_variants(), move |shapes, threads| {
+            let shapes = shapes.clone();
+            let settings = BvhSettings {
+                quality,
+                ..BvhSettings::default()
+            };
+            Box::new(on_threads(threads, move || -> Box<dyn Tracer> {
+                let built = Aggregate::build(shapes, settings);
+                let is_final = quality != BvhQuality::High || built.is_refined();
+                let built = (!is_final)
+                    .then(|| built.refined(&|_| ControlFlow::Continue(())))
+                    .flatten()
+                    .unwrap_or(built);
+                Box::new(Ours(built.with_isa(isa)))
+            }))
+        })
+    };
+    vec![
+        one("ours", BvhQuality::Standard),
+        one("ours-high", BvhQuality::High),
+        one("ours-fast", BvhQuality::Fast),
+    ]
 }
 
 /// `build` on a pool of so many threads, which is there before the clock starts.
