@@ -1,7 +1,6 @@
 use super::packet::{PacketRays, PerRay};
-use super::simd::Lanes;
 use super::slab::SlabRay;
-use crate::math::Ray;
+use crate::math::{Lanes, Ray};
 
 /// The primitives in the leaves of a tree, as the caller holds them.
 pub trait Leaves: Sync {

@@ -4,8 +4,8 @@ use super::Hit;
 use super::block::Block;
 use super::leaf::Query;
 use super::triangle::Shear;
-use crate::bvh::{BLOCK, GROUPS, Lanes, PACKET, PacketRays, PerRay, SlabRay, padded_four};
-use crate::math::Ray;
+use crate::bvh::{BLOCK, GROUPS, PACKET, PacketRays, PerRay, SlabRay, padded_four};
+use crate::math::{Lanes, Ray};
 
 /// Rays in a group.
 pub(super) const LANES: usize = PACKET / GROUPS;

@@ -3,8 +3,8 @@ use glam::Vec4;
 use super::block::Block;
 use super::leaf::{LeafOrder, Query};
 use super::packet::{Corners, LANES, Packet, Planes};
-use crate::bvh::{BLOCK, GROUPS, Lanes, PacketLeaves, PacketRays, PerRay};
-use crate::math::Ray;
+use crate::bvh::{BLOCK, GROUPS, PacketLeaves, PacketRays, PerRay};
+use crate::math::{Lanes, Ray};
 
 impl PacketLeaves for LeafOrder {
     type Packet = Packet;

@@ -1,8 +1,10 @@
-//! Floor 0: what glam lacks. Rays, boxes, shading frames, robust ray origins, instruction sets.
+//! Floor 0: what glam lacks. Rays, boxes, shading frames, robust ray origins, instruction sets,
+//! lanes.
 
 mod aabb;
 mod frame;
 mod isa;
+mod lanes;
 mod normalization;
 mod offset;
 mod ray;
@@ -10,6 +12,10 @@ mod ray;
 pub use aabb::Aabb;
 pub use frame::Frame;
 pub use isa::{Isa, IsaError};
+#[cfg(target_arch = "x86_64")]
+pub(crate) use lanes::Avx2Lanes;
+pub(crate) use lanes::PortableLanes;
+pub use lanes::{DoubleLanes, IntLanes, LANES, LaneKernel, Lanes, Vec3Lanes, run_lanes};
 pub use normalization::Normalization;
 pub use offset::{SHADOW_T_MAX, gamma, offset_origin};
 pub use ray::Ray;

@@ -1,7 +1,7 @@
 use super::super::node::{WIDTH, WideNode};
-use super::super::simd::{LANES, Lanes};
 use super::super::slab::FAR_MARGIN;
 use super::rays::{PacketRays, PerRay};
+use crate::math::{LANES, Lanes};
 
 /// What bounds all rays of a packet.
 #[derive(Clone, Copy, Debug)]

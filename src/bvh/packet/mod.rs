@@ -13,9 +13,9 @@ pub use rays::{GROUPS, PACKET, PacketRays, PerRay};
 
 use super::leaves::{PacketLeaves, Work};
 use super::node::{LEAF, WideNode};
-use super::simd::{Kernel, LANES, NodeTest, prefetch};
+use super::simd::{Kernel, NodeTest, prefetch};
 use super::tree::Bvh;
-use crate::math::Ray;
+use crate::math::{LANES, Ray};
 use interval::Interval;
 use pending::Pending;
 use pool::{Lane, Pool, take};

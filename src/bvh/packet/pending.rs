@@ -1,9 +1,9 @@
 use super::super::node::{WIDTH, WideNode};
 use super::super::octant::FAR_TO_NEAR;
-use super::super::simd::{LANES, Lanes};
 use super::super::slab::FAR_MARGIN;
 use super::interval::{Interval, Planes, largest};
 use super::rays::{GROUPS, PacketRays, PerRay};
+use crate::math::{LANES, Lanes};
 
 /// What a packet has still to visit, the nearest last.
 #[derive(Debug)]

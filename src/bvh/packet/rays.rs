@@ -1,7 +1,6 @@
-use super::super::simd::{LANES, Lanes};
 use super::super::slab::{FAR_MARGIN, SlabRay, T_FAR};
 use super::super::tree::BLOCK;
-use crate::math::Ray;
+use crate::math::{LANES, Lanes, Ray};
 
 /// Groups of eight rays in a packet.
 pub const GROUPS: usize = 4;

@@ -12,9 +12,8 @@ use std::arch::x86_64::{
 
 use super::super::node::{WIDTH, WideNode};
 use super::super::slab::{FAR_MARGIN, SlabRay};
-use super::avx2_lanes::Avx2Lanes;
 use super::{Kernel, NodeTest};
-use crate::math::Isa;
+use crate::math::{Avx2Lanes, Isa};
 
 /// Eight lanes at once. Used only inside [`with_avx2`].
 #[derive(Debug)]

@@ -3,20 +3,14 @@
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
-#[cfg(target_arch = "x86_64")]
-mod avx2_lanes;
-mod lanes;
 mod portable;
-mod portable_lanes;
 mod prefetch;
 
-pub(super) use lanes::LANES;
-pub use lanes::Lanes;
 pub(super) use prefetch::prefetch;
 
 use super::node::{WIDTH, WideNode};
 use super::slab::SlabRay;
-use crate::math::Isa;
+use crate::math::{Isa, Lanes};
 
 /// One node against one ray. Implementations differ in speed only, never in a bit.
 pub(super) trait NodeTest {

@@ -3,7 +3,7 @@ use glam::Vec4;
 use super::super::node::{WIDTH, WideNode};
 use super::super::slab::{FAR_MARGIN, SlabRay};
 use super::NodeTest;
-use super::portable_lanes::PortableLanes;
+use crate::math::PortableLanes;
 
 /// Two vectors of four, which every processor has.
 #[derive(Debug)]

@@ -2,15 +2,17 @@ use std::ops::{Add, BitAnd, BitOr, Div, Mul, Sub};
 
 use glam::{BVec4A, Vec4};
 
-use super::lanes::{LANES, Lanes};
+use super::portable_doubles::PortableDoubles;
+use super::portable_ints::PortableInts;
+use super::{LANES, Lanes};
 
 /// Eight lanes as two vectors of four.
 #[derive(Clone, Copy, Debug)]
-pub(in super::super) struct PortableLanes(Vec4, Vec4);
+pub(crate) struct PortableLanes(Vec4, Vec4);
 
 /// A truth value for each of [`PortableLanes`].
 #[derive(Clone, Copy, Debug)]
-pub(in super::super) struct PortableMask(BVec4A, BVec4A);
+pub(crate) struct PortableMask(BVec4A, BVec4A);
 
 macro_rules! operators {
     ($type:ty: $($trait:ident $name:ident;)*) => {
@@ -30,6 +32,8 @@ operators! { PortableMask: BitAnd bitand; BitOr bitor; }
 
 impl Lanes for PortableLanes {
     type Mask = PortableMask;
+    type Ints = PortableInts;
+    type Doubles = PortableDoubles;
 
     #[inline(always)]
     fn splat(value: f32) -> Self {
@@ -88,5 +92,45 @@ impl Lanes for PortableLanes {
     #[inline(always)]
     fn bits(mask: PortableMask) -> u32 {
         mask.0.bitmask() | mask.1.bitmask() << 4
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self::load(&self.to_array().map(f32::sqrt))
+    }
+
+    #[inline(always)]
+    fn to_ints(self) -> PortableInts {
+        PortableInts(self.to_array().map(f32::to_bits))
+    }
+
+    #[inline(always)]
+    fn from_ints(ints: PortableInts) -> Self {
+        Self::load(&ints.0.map(f32::from_bits))
+    }
+
+    #[inline(always)]
+    fn of_ints(ints: PortableInts) -> Self {
+        Self::load(&ints.0.map(|value| value.cast_signed() as f32))
+    }
+
+    #[inline(always)]
+    fn ints_eq(a: PortableInts, b: PortableInts) -> PortableMask {
+        let equal = |lane: usize| a.0[lane] == b.0[lane];
+        PortableMask(
+            BVec4A::from_array(std::array::from_fn(equal)),
+            BVec4A::from_array(std::array::from_fn(|lane| equal(lane + 4))),
+        )
+    }
+
+    #[inline(always)]
+    fn select_ints(mask: PortableMask, yes: PortableInts, no: PortableInts) -> PortableInts {
+        Self::select(mask, Self::from_ints(yes), Self::from_ints(no)).to_ints()
+    }
+
+    #[inline(always)]
+    fn transpose(rows: [Self; LANES]) -> [Self; LANES] {
+        let rows = rows.map(Self::to_array);
+        std::array::from_fn(|column| Self::load(&rows.map(|row| row[column])))
     }
 }

@@ -1,8 +1,10 @@
 use std::fmt::Debug;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Sub};
 
+use super::{DoubleLanes, IntLanes};
+
 /// Numbers in one [`Lanes`].
-pub(in super::super) const LANES: usize = 8;
+pub const LANES: usize = 8;
 
 /// Eight numbers side by side, for code that is written once for all instruction sets.
 ///
@@ -13,6 +15,12 @@ pub trait Lanes:
 {
     /// A truth value for each lane.
     type Mask: Copy + Debug + BitAnd<Output = Self::Mask> + BitOr<Output = Self::Mask>;
+
+    /// Eight integers.
+    type Ints: IntLanes;
+
+    /// Eight numbers of double precision.
+    type Doubles: DoubleLanes<Singles = Self>;
 
     /// The same number in all lanes.
     fn splat(value: f32) -> Self;
@@ -47,6 +55,56 @@ pub trait Lanes:
     /// A bit for each lane.
     fn bits(mask: Self::Mask) -> u32;
 
+    /// The square root, correctly rounded.
+    fn sqrt(self) -> Self;
+
+    /// The bits of the numbers.
+    fn to_ints(self) -> Self::Ints;
+
+    /// The numbers with these bits.
+    fn from_ints(ints: Self::Ints) -> Self;
+
+    /// The values of integers below 2³¹, rounded to nearest.
+    fn of_ints(ints: Self::Ints) -> Self;
+
+    /// Where two integers are equal.
+    fn ints_eq(a: Self::Ints, b: Self::Ints) -> Self::Mask;
+
+    /// `yes` where the mask is true, else `no`.
+    fn select_ints(mask: Self::Mask, yes: Self::Ints, no: Self::Ints) -> Self::Ints;
+
+    /// Rows and columns exchanged.
+    fn transpose(rows: [Self; LANES]) -> [Self; LANES];
+
+    /// A mask with the lanes whose bits are set.
+    #[inline(always)]
+    fn mask_of_bits(bits: u32) -> Self::Mask {
+        let lane = Self::Ints::load(&[1, 2, 4, 8, 16, 32, 64, 128]);
+        Self::ints_eq(lane & Self::Ints::splat(bits), lane)
+    }
+
+    /// The numbers as an array.
+    #[inline(always)]
+    fn to_array(self) -> [f32; LANES] {
+        let mut array = [0.0; LANES];
+        self.store(&mut array);
+        array
+    }
+
+    /// The same numbers with the other sign.
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self::from_ints(self.to_ints() ^ Self::Ints::splat(1 << 31))
+    }
+
+    /// The sizes of these numbers with the signs of `sign`.
+    #[inline(always)]
+    fn copysign(self, sign: Self) -> Self {
+        let mask = Self::Ints::splat(1 << 31);
+        let size = self.to_ints() & Self::Ints::splat(!(1 << 31));
+        Self::from_ints(size | (sign.to_ints() & mask))
+    }
+
     /// Where `self` is greater.
     #[inline(always)]
     fn gt(self, other: Self) -> Self::Mask {
@@ -62,6 +120,6 @@ pub trait Lanes:
     /// Without sign.
     #[inline(always)]
     fn abs(self) -> Self {
-        self.max(Self::splat(0.0) - self)
+        Self::from_ints(self.to_ints() & Self::Ints::splat(!(1 << 31)))
     }
 }

@@ -1,0 +1,74 @@
+#![expect(unsafe_code, reason = "intrinsics; see `avx2`")]
+
+use std::arch::x86_64::{
+    __m256i, _mm256_add_epi32, _mm256_and_si256, _mm256_loadu_si256, _mm256_mullo_epi32,
+    _mm256_or_si256, _mm256_set1_epi32, _mm256_slli_epi32, _mm256_srai_epi32, _mm256_srli_epi32,
+    _mm256_storeu_si256, _mm256_xor_si256,
+};
+use std::ops::{Add, BitAnd, BitOr, BitXor, Mul};
+
+use super::{IntLanes, LANES};
+
+/// Eight integers in one register. Used only by kernels that [`super::avx2::run`] has started.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Avx2Ints(pub(super) __m256i);
+
+macro_rules! operators {
+    ($($trait:ident $name:ident $intrinsic:ident;)*) => {
+        $(impl $trait for Avx2Ints {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $name(self, other: Self) -> Self {
+                // SAFETY: AVX2 is there (see `Avx2Ints`).
+                Self(unsafe { $intrinsic(self.0, other.0) })
+            }
+        })*
+    };
+}
+
+operators! {
+    Add add _mm256_add_epi32;
+    Mul mul _mm256_mullo_epi32;
+    BitAnd bitand _mm256_and_si256;
+    BitOr bitor _mm256_or_si256;
+    BitXor bitxor _mm256_xor_si256;
+}
+
+impl IntLanes for Avx2Ints {
+    #[inline(always)]
+    fn splat(value: u32) -> Self {
+        // SAFETY: AVX2 is there (see `Avx2Ints`).
+        Self(unsafe { _mm256_set1_epi32(value.cast_signed()) })
+    }
+
+    #[inline(always)]
+    fn load(from: &[u32; LANES]) -> Self {
+        // SAFETY: AVX2 is there (see `Avx2Ints`); the array has eight numbers.
+        Self(unsafe { _mm256_loadu_si256(from.as_ptr().cast()) })
+    }
+
+    #[inline(always)]
+    fn store(self, to: &mut [u32; LANES]) {
+        // SAFETY: AVX2 is there (see `Avx2Ints`); there is room for eight numbers.
+        unsafe { _mm256_storeu_si256(to.as_mut_ptr().cast(), self.0) }
+    }
+
+    #[inline(always)]
+    fn shl<const BY: i32>(self) -> Self {
+        // SAFETY: AVX2 is there (see `Avx2Ints`).
+        Self(unsafe { _mm256_slli_epi32::<BY>(self.0) })
+    }
+
+    #[inline(always)]
+    fn shr<const BY: i32>(self) -> Self {
+        // SAFETY: AVX2 is there (see `Avx2Ints`).
+        Self(unsafe { _mm256_srli_epi32::<BY>(self.0) })
+    }
+
+    #[inline(always)]
+    fn sar<const BY: i32>(self) -> Self {
+        // SAFETY: AVX2 is there (see `Avx2Ints`).
+        Self(unsafe { _mm256_srai_epi32::<BY>(self.0) })
+    }
+}

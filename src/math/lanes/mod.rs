@@ -1,0 +1,55 @@
+//! Eight numbers side by side, for kernels that are written once and compiled for each instruction
+//! set. Implementations differ in speed only, never in a bit.
+//!
+//! A [`LaneKernel`] is generic over [`Lanes`]; [`run_lanes`] compiles it for the instruction set that
+//! is asked for. All that a kernel calls often must be inlined into it.
+
+#[cfg(target_arch = "x86_64")]
+mod avx2;
+#[cfg(target_arch = "x86_64")]
+mod avx2_doubles;
+#[cfg(target_arch = "x86_64")]
+mod avx2_ints;
+mod doubles;
+mod floats;
+mod ints;
+mod portable;
+mod portable_doubles;
+mod portable_ints;
+#[cfg(test)]
+mod tests;
+mod vec3;
+
+#[cfg(target_arch = "x86_64")]
+pub(crate) use avx2::Avx2Lanes;
+pub use doubles::DoubleLanes;
+pub use floats::{LANES, Lanes};
+pub use ints::IntLanes;
+pub(crate) use portable::PortableLanes;
+pub use vec3::Vec3Lanes;
+
+use super::Isa;
+
+/// Work that is compiled once for each instruction set.
+pub trait LaneKernel {
+    /// What it gives.
+    type Answer;
+
+    /// Does it. Must be inlined, with all that it calls often.
+    fn run<L: Lanes>(self) -> Self::Answer;
+}
+
+/// Runs `kernel` with the code for `isa`.
+///
+/// # Panics
+/// When the processor does not have it.
+pub fn run_lanes<K: LaneKernel>(isa: Isa, kernel: K) -> K::Answer {
+    match isa {
+        #[cfg(target_arch = "x86_64")]
+        Isa::Avx2 => avx2::run(kernel),
+        _ => {
+            assert!(isa.is_available(), "this processor has no {isa}");
+            kernel.run::<PortableLanes>()
+        }
+    }
+}

@@ -1,0 +1,141 @@
+use glam::{DVec3, Vec3};
+
+use super::{DoubleLanes, IntLanes, LANES, LaneKernel, Lanes, Vec3Lanes, run_lanes};
+use crate::math::Isa;
+
+const ODD: [f32; LANES] = [
+    0.0,
+    -0.0,
+    1.5,
+    -7.25e-20,
+    f32::INFINITY,
+    f32::NAN,
+    1e-42,
+    -3e38,
+];
+const EVEN: [f32; LANES] = [2.0, 0.0, 1.5, 4.0, -1.0, 1.0, 1e-42, 2.0];
+const BITS: [u32; LANES] = [
+    0,
+    1,
+    0x8000_0000,
+    0xFFFF_FFFF,
+    0x1234_5678,
+    77,
+    0x7FFF_FFFF,
+    6,
+];
+
+/// Every operation on one pair of vectors, as bits.
+struct All;
+
+impl LaneKernel for All {
+    type Answer = Vec<[u32; LANES]>;
+
+    fn run<L: Lanes>(self) -> Self::Answer {
+        let (a, b) = (L::load(&ODD), L::load(&EVEN));
+        let (i, j) = (L::Ints::load(&BITS), L::Ints::splat(0x9E37_79B9));
+        let picked = |mask: L::Mask| L::select(mask, a, b);
+        let rows = std::array::from_fn(|row| L::load(&ODD.map(|value| value + row as f32)));
+        let mut numbers = vec![a + b, a - b, a * b, a / b, a.sqrt(), a.neg(), b.copysign(a)];
+        numbers.extend([a.abs(), L::of_ints(i.shr::<1>()), L::from_ints(i)]);
+        numbers.extend([
+            picked(a.lt(b)),
+            picked(a.le(b)),
+            picked(a.eq(b)),
+            picked(a.gt(b)),
+        ]);
+        numbers.extend([
+            picked(L::ints_eq(i, L::Ints::splat(77))),
+            picked(L::mask_of_bits(0x53)),
+        ]);
+        numbers.extend(L::transpose(rows));
+        let wide = L::Doubles::widen(a) / L::Doubles::splat(3.0) + L::Doubles::widen(b);
+        numbers.extend([wide.narrow(), wide.sqrt().narrow()]);
+        let v = Vec3Lanes::new(a, b, b);
+        let w = Vec3Lanes::new(b, a, a);
+        let unit = v.unit_cross(w);
+        numbers.extend([unit.x, unit.y, unit.z, v.normalize_or(w).x]);
+        let mut all: Vec<_> = numbers
+            .into_iter()
+            .map(|n| n.to_array().map(bits))
+            .collect();
+        let ints = [
+            i + j,
+            i * j,
+            i & j,
+            i | j,
+            i ^ j,
+            i.shl::<5>(),
+            i.shr::<7>(),
+            i.sar::<31>(),
+        ];
+        all.extend(ints.map(L::Ints::to_array));
+        all.push(L::select_ints(a.lt(b), i, j).to_array());
+        all
+    }
+}
+
+/// The bits, the same for every NaN.
+fn bits(value: f32) -> u32 {
+    if value.is_nan() {
+        f32::NAN.to_bits()
+    } else {
+        value.to_bits()
+    }
+}
+
+#[test]
+fn every_instruction_set_gives_the_same_bits() {
+    let portable = run_lanes(Isa::Portable, All);
+    for isa in Isa::available() {
+        assert_eq!(run_lanes(isa, All), portable, "{isa}");
+    }
+    let sums: [u32; LANES] = std::array::from_fn(|lane| bits(ODD[lane] + EVEN[lane]));
+    let roots = ODD.map(|value| bits(value.sqrt()));
+    assert_eq!((portable[0], portable[4]), (sums, roots));
+}
+
+/// Triangles of all shapes and sizes, some without area.
+fn edges() -> impl Iterator<Item = [(Vec3, Vec3); LANES]> {
+    let number = |i: u32| (i.wrapping_mul(0x9E37_79B9) >> 8) as f32 / 8_388_608.0 - 1.0;
+    let vector = move |i: u32| Vec3::new(number(i), number(i + 1), number(i + 2));
+    (0..200_u32).map(move |group| {
+        std::array::from_fn(|lane| {
+            let i = 100 * group + 10 * lane as u32;
+            let (a, b) = (vector(i), vector(i + 5));
+            match i % 3 {
+                0 => (a, b),
+                1 => (a, a * 3.0 + b * 1e-6),
+                _ => (a * 1e-20, if i % 7 == 0 { Vec3::ZERO } else { b * 1e-20 }),
+            }
+        })
+    })
+}
+
+struct Units([(Vec3, Vec3); LANES]);
+
+impl LaneKernel for Units {
+    type Answer = [[[f32; LANES]; 3]; 2];
+
+    fn run<L: Lanes>(self) -> Self::Answer {
+        let a = Vec3Lanes::<L>::gather(|lane| self.0[lane].0);
+        let b = Vec3Lanes::<L>::gather(|lane| self.0[lane].1);
+        [a.unit_cross(b), a.cross(b).normalize_or(a)].map(Vec3Lanes::to_arrays)
+    }
+}
+
+#[test]
+fn vectors_are_those_of_glam() {
+    for group in edges() {
+        for isa in Isa::available() {
+            let [wide, narrow] = run_lanes(isa, Units(group));
+            for (lane, (a, b)) in group.into_iter().enumerate() {
+                let cross = a.as_dvec3().cross(b.as_dvec3());
+                let expected = cross.normalize_or(DVec3::Z).as_vec3();
+                assert_eq!(Vec3::from_array(wide.map(|axis| axis[lane])), expected);
+                let expected = a.cross(b).normalize_or(a);
+                assert_eq!(Vec3::from_array(narrow.map(|axis| axis[lane])), expected);
+            }
+        }
+    }
+}
