@@ -1,6 +1,7 @@
 use glam::Vec3;
 
 use super::triangle_point_and_error;
+use crate::math::{Lanes, Vec3Lanes};
 
 /// Rays leave this many bounds of the error of a coordinate away from the edges. Enough for faces
 /// that meet at 10 degrees: an origin is lifted by less than two of these bounds.
@@ -32,6 +33,15 @@ pub fn triangle_departure(
         Some([b1, b2]) => triangle_point_and_error(vertices, b1, b2),
         None => at,
     }
+}
+
+/// Where [`triangle_departure`] would leave eight points alone, given their weights, the squares of the
+/// longest sides of their triangles and the bounds of their errors.
+#[inline(always)]
+pub fn is_clear_of_edges<L: Lanes>(weights: [L; 3], longest: L, error: Vec3Lanes<L>) -> L::Mask {
+    let least = weights[0].min(weights[1]).min(weights[2]);
+    let most = L::splat(MOST_MOVE) * error.max_element();
+    least.gt(L::splat(0.0)) & (least * least * longest).ge(most * most)
 }
 
 /// `b1` and `b2` of a point close by that keeps clear of the edges, given the bound of the error of

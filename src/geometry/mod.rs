@@ -24,7 +24,7 @@ mod surface_point;
 mod triangle;
 
 pub use aggregate::{Aggregate, TraceCounts};
-pub use departure::triangle_departure;
+pub use departure::{is_clear_of_edges, triangle_departure};
 pub use hit::Hit;
 pub use instance::Instance;
 pub use instances::{InstanceStats, Instances};

@@ -15,7 +15,10 @@ pub use isa::{Isa, IsaError};
 #[cfg(target_arch = "x86_64")]
 pub(crate) use lanes::Avx2Lanes;
 pub(crate) use lanes::PortableLanes;
-pub use lanes::{DoubleLanes, IntLanes, LANES, LaneKernel, Lanes, Vec3Lanes, run_lanes};
+pub use lanes::{
+    DoubleLanes, FrameLanes, IntLanes, LANES, LaneKernel, Lanes, Vec3Array, Vec3Lanes,
+    offset_origin_lanes, run_lanes,
+};
 pub use normalization::Normalization;
 pub use offset::{SHADOW_T_MAX, gamma, offset_origin};
 pub use ray::Ray;

@@ -4,12 +4,14 @@
 mod distribution_1d;
 mod distribution_2d;
 mod heuristic;
+mod lanes;
 mod path_sampler;
 mod warp;
 
 pub use distribution_1d::Distribution1d;
 pub use distribution_2d::Distribution2d;
 pub use heuristic::power_heuristic;
+pub use lanes::cosine_hemisphere_lanes;
 pub use path_sampler::{PathSampler, Slot};
 pub use warp::{
     UNIFORM_HEMISPHERE_PDF, UNIFORM_SPHERE_PDF, cosine_hemisphere, cosine_hemisphere_pdf,

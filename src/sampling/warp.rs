@@ -1,9 +1,9 @@
-use std::f32::consts::{FRAC_1_PI, FRAC_PI_2, FRAC_PI_4, TAU};
+use std::f32::consts::{FRAC_1_PI, TAU};
 
 use glam::{Vec2, Vec3};
 
 /// The spacing 2⁻²⁴ of the numbers that [`super::PathSampler`] gives.
-const LATTICE_CELL: f32 = 1.0 / 16_777_216.0;
+pub(super) const LATTICE_CELL: f32 = 1.0 / 16_777_216.0;
 
 /// The density of [`uniform_hemisphere`] per steradian.
 pub const UNIFORM_HEMISPHERE_PDF: f32 = 1.0 / TAU;
@@ -82,19 +82,54 @@ fn spherical(sin2_theta: f32, cos_theta: f32, u_phi: f32) -> Vec3 {
 /// Signed radius in (−1, 1), never 0, and unit direction of the concentric map.
 fn concentric(u: Vec2) -> (f32, Vec2) {
     let p = 2.0 * u - Vec2::ONE + Vec2::splat(LATTICE_CELL);
-    let (radius, phi) = if p.x.abs() > p.y.abs() {
-        (p.x, FRAC_PI_4 * (p.y / p.x))
-    } else {
-        (p.y, FRAC_PI_2 - FRAC_PI_4 * (p.x / p.y))
-    };
-    let (sin_phi, cos_phi) = phi.sin_cos();
-    (radius, Vec2::new(cos_phi, sin_phi))
+    let is_wide = p.x.abs() > p.y.abs();
+    let (radius, other) = if is_wide { (p.x, p.y) } else { (p.y, p.x) };
+    let (sin, cos) = sin_cos_eighth(other / radius);
+    // The angle is that from the axis of the larger coordinate.
+    let direction = if is_wide { (cos, sin) } else { (sin, cos) };
+    (radius, direction.into())
 }
+
+/// Sine and cosine of π/4 · `x` for `x` in [−1, 1], to about the last bit: the same bits everywhere,
+/// which library functions do not promise, and in lanes too ([`super::lanes`]).
+fn sin_cos_eighth(x: f32) -> (f32, f32) {
+    let x2 = x * x;
+    let [s0, s1, s2, s3] = SIN_EIGHTH;
+    let [c0, c1, c2, c3, c4] = COS_EIGHTH;
+    (
+        x * (s0 + x2 * (s1 + x2 * (s2 + x2 * s3))),
+        c0 + x2 * (c1 + x2 * (c2 + x2 * (c3 + x2 * c4))),
+    )
+}
+
+/// Of sin(π/4 · x) / x as a polynomial of x², the one that is least wrong over [−1, 1].
+pub(super) const SIN_EIGHTH: [f32; 4] =
+    [0.785_398_2, -0.080_745_436, 0.002_490_007, -3.595_450_8e-5];
+
+/// Of cos(π/4 · x), likewise.
+pub(super) const COS_EIGHTH: [f32; 5] = [
+    1.0,
+    -0.308_425_13,
+    0.015_854_325,
+    -0.000_325_938_63,
+    3.529_811_2e-6,
+];
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::sampling::{ONE_MINUS_EPSILON, PathSampler, Slot};
+
+    #[test]
+    fn the_polynomials_are_sine_and_cosine() {
+        for i in -100_000..=100_000_i32 {
+            let x = i as f32 / 100_000.0;
+            let (sin, cos) = sin_cos_eighth(x);
+            let phi = std::f64::consts::FRAC_PI_4 * f64::from(x);
+            assert!((f64::from(sin) - phi.sin()).abs() < 1e-7, "{x}");
+            assert!((f64::from(cos) - phi.cos()).abs() < 1e-7, "{x}");
+        }
+    }
 
     /// The corners and neighbourhood of the lattice {0, 2⁻²⁴, …, 1 − 2⁻²⁴}², and a spread of it.
     fn lattice() -> impl Iterator<Item = Vec2> {

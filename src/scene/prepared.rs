@@ -168,6 +168,20 @@ impl PreparedScene {
         }
     }
 
+    /// The reflectance of `primitive` if it is one of the plain surfaces that most paths meet, whose
+    /// shading goes eight at a time: diffuse, not black, without emission, not shared by instances.
+    #[inline]
+    pub fn plain_reflectance(&self, primitive: u32) -> Option<Rgb> {
+        let owner = *self.tables.owner_of.get(primitive as usize)?;
+        let owner = &self.tables.owners[owner as usize];
+        match self.tables.materials[owner.material as usize].bsdf {
+            Bsdf::Diffuse(diffuse) if owner.light == DARK && diffuse.reflectance != Rgb::ZERO => {
+                Some(diffuse.reflectance)
+            }
+            _ => None,
+        }
+    }
+
     /// Name of the material of `primitive`.
     pub fn material_name(&self, primitive: u32) -> &str {
         &self.tables.materials[self.owner(primitive).material as usize].name

@@ -175,25 +175,34 @@ impl Lanes for Avx2Lanes {
         // SAFETY: AVX2 is there (see `Avx2Lanes`).
         unsafe {
             // Pairs of rows, then fours, then halves.
-            let low = |i: usize| _mm256_unpacklo_ps(rows[i].0, rows[i + 1].0);
-            let high = |i: usize| _mm256_unpackhi_ps(rows[i].0, rows[i + 1].0);
-            let (a, b, c, d) = (low(0), low(2), low(4), low(6));
-            let (e, f, g, h) = (high(0), high(2), high(4), high(6));
-            let first = |x: __m256, y: __m256| _mm256_shuffle_ps::<0b01_00_01_00>(x, y);
-            let second = |x: __m256, y: __m256| _mm256_shuffle_ps::<0b11_10_11_10>(x, y);
-            let top = [first(a, b), second(a, b), first(e, f), second(e, f)];
-            let bottom = [first(c, d), second(c, d), first(g, h), second(g, h)];
-            let left = |i: usize| _mm256_permute2f128_ps::<0x20>(top[i], bottom[i]);
-            let right = |i: usize| _mm256_permute2f128_ps::<0x31>(top[i], bottom[i]);
+            macro_rules! four {
+                ($a:literal, $b:literal) => {{
+                    let (top, bottom) = (
+                        _mm256_unpacklo_ps(rows[$a].0, rows[$a + 1].0),
+                        _mm256_unpackhi_ps(rows[$a].0, rows[$a + 1].0),
+                    );
+                    let (next, last) = (
+                        _mm256_unpacklo_ps(rows[$b].0, rows[$b + 1].0),
+                        _mm256_unpackhi_ps(rows[$b].0, rows[$b + 1].0),
+                    );
+                    [
+                        _mm256_shuffle_ps::<0b01_00_01_00>(top, next),
+                        _mm256_shuffle_ps::<0b11_10_11_10>(top, next),
+                        _mm256_shuffle_ps::<0b01_00_01_00>(bottom, last),
+                        _mm256_shuffle_ps::<0b11_10_11_10>(bottom, last),
+                    ]
+                }};
+            }
+            let (upper, lower) = (four!(0, 2), four!(4, 6));
             [
-                Self(left(0)),
-                Self(left(1)),
-                Self(left(2)),
-                Self(left(3)),
-                Self(right(0)),
-                Self(right(1)),
-                Self(right(2)),
-                Self(right(3)),
+                Self(_mm256_permute2f128_ps::<0x20>(upper[0], lower[0])),
+                Self(_mm256_permute2f128_ps::<0x20>(upper[1], lower[1])),
+                Self(_mm256_permute2f128_ps::<0x20>(upper[2], lower[2])),
+                Self(_mm256_permute2f128_ps::<0x20>(upper[3], lower[3])),
+                Self(_mm256_permute2f128_ps::<0x31>(upper[0], lower[0])),
+                Self(_mm256_permute2f128_ps::<0x31>(upper[1], lower[1])),
+                Self(_mm256_permute2f128_ps::<0x31>(upper[2], lower[2])),
+                Self(_mm256_permute2f128_ps::<0x31>(upper[3], lower[3])),
             ]
         }
     }

@@ -71,26 +71,32 @@ impl DoubleLanes for Avx2Doubles {
 
     #[inline(always)]
     fn is_positive_and_finite(self) -> Self {
-        let flag = |value: __m256d| {
-            // SAFETY: AVX2 is there (see `Avx2Doubles`).
-            unsafe {
-                let above = _mm256_cmp_pd::<_CMP_GT_OQ>(value, _mm256_setzero_pd());
-                let finite = _mm256_cmp_pd::<_CMP_LT_OQ>(value, _mm256_set1_pd(f64::INFINITY));
-                _mm256_and_pd(_mm256_and_pd(above, finite), _mm256_set1_pd(1.0))
-            }
-        };
         Self(flag(self.0), flag(self.1))
     }
 
     #[inline(always)]
     fn or_where_zero(self, flag: Self, other: Self) -> Self {
-        let pick = |flag: __m256d, yes: __m256d, no: __m256d| {
-            // SAFETY: AVX2 is there (see `Avx2Doubles`).
-            unsafe {
-                let zero = _mm256_cmp_pd::<_CMP_EQ_OQ>(flag, _mm256_setzero_pd());
-                _mm256_blendv_pd(yes, no, zero)
-            }
-        };
         Self(pick(flag.0, self.0, other.0), pick(flag.1, self.1, other.1))
+    }
+}
+
+/// 1 where the number is finite and above 0, else 0.
+#[inline(always)]
+fn flag(value: __m256d) -> __m256d {
+    // SAFETY: AVX2 is there (see `Avx2Doubles`).
+    unsafe {
+        let above = _mm256_cmp_pd::<_CMP_GT_OQ>(value, _mm256_setzero_pd());
+        let finite = _mm256_cmp_pd::<_CMP_LT_OQ>(value, _mm256_set1_pd(f64::INFINITY));
+        _mm256_and_pd(_mm256_and_pd(above, finite), _mm256_set1_pd(1.0))
+    }
+}
+
+/// `no` where `flag` is 0, else `yes`.
+#[inline(always)]
+fn pick(flag: __m256d, yes: __m256d, no: __m256d) -> __m256d {
+    // SAFETY: AVX2 is there (see `Avx2Doubles`).
+    unsafe {
+        let zero = _mm256_cmp_pd::<_CMP_EQ_OQ>(flag, _mm256_setzero_pd());
+        _mm256_blendv_pd(yes, no, zero)
     }
 }

@@ -16,9 +16,11 @@ mod ints;
 mod portable;
 mod portable_doubles;
 mod portable_ints;
+mod surface;
 #[cfg(test)]
 mod tests;
 mod vec3;
+mod vec3_array;
 
 #[cfg(target_arch = "x86_64")]
 pub(crate) use avx2::Avx2Lanes;
@@ -26,7 +28,9 @@ pub use doubles::DoubleLanes;
 pub use floats::{LANES, Lanes};
 pub use ints::IntLanes;
 pub(crate) use portable::PortableLanes;
+pub use surface::{FrameLanes, offset_origin_lanes};
 pub use vec3::Vec3Lanes;
+pub use vec3_array::Vec3Array;
 
 use super::Isa;
 

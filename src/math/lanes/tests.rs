@@ -1,7 +1,10 @@
 use glam::{DVec3, Vec3};
 
-use super::{DoubleLanes, IntLanes, LANES, LaneKernel, Lanes, Vec3Lanes, run_lanes};
-use crate::math::Isa;
+use super::{
+    DoubleLanes, FrameLanes, IntLanes, LANES, LaneKernel, Lanes, Vec3Array, Vec3Lanes,
+    offset_origin_lanes, run_lanes,
+};
+use crate::math::{Frame, Isa, offset_origin};
 
 const ODD: [f32; LANES] = [
     0.0,
@@ -96,7 +99,7 @@ fn every_instruction_set_gives_the_same_bits() {
 }
 
 /// Triangles of all shapes and sizes, some without area.
-fn edges() -> impl Iterator<Item = [(Vec3, Vec3); LANES]> {
+fn edges() -> impl Iterator<Item = Pairs> {
     let number = |i: u32| (i.wrapping_mul(0x9E37_79B9) >> 8) as f32 / 8_388_608.0 - 1.0;
     let vector = move |i: u32| Vec3::new(number(i), number(i + 1), number(i + 2));
     (0..200_u32).map(move |group| {
@@ -112,15 +115,26 @@ fn edges() -> impl Iterator<Item = [(Vec3, Vec3); LANES]> {
     })
 }
 
-struct Units([(Vec3, Vec3); LANES]);
+type Pairs = [(Vec3, Vec3); LANES];
+
+/// The first and the second vectors of pairs.
+fn loaded<L: Lanes>(pairs: &Pairs) -> (Vec3Lanes<L>, Vec3Lanes<L>) {
+    let (mut a, mut b) = (Vec3Array::ZERO, Vec3Array::ZERO);
+    for (lane, pair) in pairs.iter().enumerate() {
+        a.set(lane, pair.0);
+        b.set(lane, pair.1);
+    }
+    (Vec3Lanes::load(&a), Vec3Lanes::load(&b))
+}
+
+struct Units(Pairs);
 
 impl LaneKernel for Units {
-    type Answer = [[[f32; LANES]; 3]; 2];
+    type Answer = [Vec3Array; 2];
 
     fn run<L: Lanes>(self) -> Self::Answer {
-        let a = Vec3Lanes::<L>::gather(|lane| self.0[lane].0);
-        let b = Vec3Lanes::<L>::gather(|lane| self.0[lane].1);
-        [a.unit_cross(b), a.cross(b).normalize_or(a)].map(Vec3Lanes::to_arrays)
+        let (a, b) = loaded::<L>(&self.0);
+        [a.unit_cross(b), a.cross(b).normalize_or(a)].map(Vec3Lanes::store)
     }
 }
 
@@ -132,9 +146,47 @@ fn vectors_are_those_of_glam() {
             for (lane, (a, b)) in group.into_iter().enumerate() {
                 let cross = a.as_dvec3().cross(b.as_dvec3());
                 let expected = cross.normalize_or(DVec3::Z).as_vec3();
-                assert_eq!(Vec3::from_array(wide.map(|axis| axis[lane])), expected);
+                assert_eq!(wide.get(lane), expected);
                 let expected = a.cross(b).normalize_or(a);
-                assert_eq!(Vec3::from_array(narrow.map(|axis| axis[lane])), expected);
+                assert_eq!(narrow.get(lane), expected);
+            }
+        }
+    }
+}
+
+struct Leave(Pairs);
+
+impl LaneKernel for Leave {
+    type Answer = [Vec3Array; 3];
+
+    fn run<L: Lanes>(self) -> Self::Answer {
+        let (point, normal) = loaded::<L>(&self.0);
+        let normal = normal.normalize_or(Vec3Lanes::splat(Vec3::Y));
+        let error = point.abs().scale(L::splat(1e-6));
+        let frame = FrameLanes::from_normal(normal);
+        [
+            offset_origin_lanes(point, error, normal, point),
+            frame.to_world(point),
+            frame.y,
+        ]
+        .map(Vec3Lanes::store)
+    }
+}
+
+#[test]
+fn frames_and_origins_are_those_of_single_points() {
+    for group in edges() {
+        for isa in Isa::available() {
+            let lanes = run_lanes(isa, Leave(group));
+            for (lane, (point, normal)) in group.into_iter().enumerate() {
+                let normal = normal.normalize_or(Vec3::Y);
+                let frame = Frame::from_normal(normal);
+                let origin = offset_origin(point, point.abs() * 1e-6, normal, point);
+                for (found, expected) in lanes.iter().zip([origin, frame.to_world(point), frame.y])
+                {
+                    let found = found.get(lane).to_array().map(f32::to_bits);
+                    assert_eq!(found, expected.to_array().map(f32::to_bits));
+                }
             }
         }
     }

@@ -2,7 +2,7 @@ use std::ops::{Add, Mul, Sub};
 
 use glam::Vec3;
 
-use super::{DoubleLanes, LANES, Lanes};
+use super::{DoubleLanes, Lanes};
 
 /// Eight vectors side by side. Every operation is that of [`Vec3`], in the same order.
 #[derive(Clone, Copy, Debug)]
@@ -28,45 +28,10 @@ impl<L: Lanes> Vec3Lanes<L> {
         Self::new(L::splat(value.x), L::splat(value.y), L::splat(value.z))
     }
 
-    /// The vectors that `at` gives for each lane.
-    #[inline(always)]
-    pub fn gather(at: impl Fn(usize) -> Vec3) -> Self {
-        let mut rows = [[0.0; LANES]; 3];
-        for lane in 0..LANES {
-            let value = at(lane);
-            rows[0][lane] = value.x;
-            rows[1][lane] = value.y;
-            rows[2][lane] = value.z;
-        }
-        Self::new(L::load(&rows[0]), L::load(&rows[1]), L::load(&rows[2]))
-    }
-
-    /// The vectors as arrays.
-    #[inline(always)]
-    pub fn to_arrays(self) -> [[f32; LANES]; 3] {
-        [self.x.to_array(), self.y.to_array(), self.z.to_array()]
-    }
-
-    /// What `of` does to each component.
-    #[inline(always)]
-    pub fn map(self, of: impl Fn(L) -> L) -> Self {
-        Self::new(of(self.x), of(self.y), of(self.z))
-    }
-
-    /// What `of` makes of each pair of components.
-    #[inline(always)]
-    pub fn zip(self, other: Self, of: impl Fn(L, L) -> L) -> Self {
-        Self::new(
-            of(self.x, other.x),
-            of(self.y, other.y),
-            of(self.z, other.z),
-        )
-    }
-
     /// Times a number.
     #[inline(always)]
     pub fn scale(self, by: L) -> Self {
-        self.map(|component| component * by)
+        Self::new(self.x * by, self.y * by, self.z * by)
     }
 
     /// As [`Vec3::dot`].
@@ -100,13 +65,13 @@ impl<L: Lanes> Vec3Lanes<L> {
     /// Sizes of the components.
     #[inline(always)]
     pub fn abs(self) -> Self {
-        self.map(L::abs)
+        Self::new(self.x.abs(), self.y.abs(), self.z.abs())
     }
 
     /// The other way.
     #[inline(always)]
     pub fn neg(self) -> Self {
-        self.map(L::neg)
+        Self::new(self.x.neg(), self.y.neg(), self.z.neg())
     }
 
     /// The largest component.
@@ -132,31 +97,61 @@ impl<L: Lanes> Vec3Lanes<L> {
     /// `yes` where the mask is true, else `no`.
     #[inline(always)]
     pub fn select(mask: L::Mask, yes: Self, no: Self) -> Self {
-        yes.zip(no, |yes, no| L::select(mask, yes, no))
+        Self::new(
+            L::select(mask, yes.x, no.x),
+            L::select(mask, yes.y, no.y),
+            L::select(mask, yes.z, no.z),
+        )
     }
 
     /// The unit vector along `self` × `other`, computed in double precision and rounded once; +z
     /// where there is none. As `cross` and `normalize_or` of [`glam::DVec3`].
     #[inline(always)]
     pub fn unit_cross(self, other: Self) -> Self {
-        let [ax, ay, az] = [self.x, self.y, self.z].map(L::Doubles::widen);
-        let [bx, by, bz] = [other.x, other.y, other.z].map(L::Doubles::widen);
+        let [ax, ay, az] = self.widen();
+        let [bx, by, bz] = other.widen();
         let cross = [ay * bz - by * az, az * bx - bz * ax, ax * by - bx * ay];
-        Self::unit(cross, [0.0, 0.0, 1.0])
+        let [x, y, z] = Self::unit_or(cross, [0.0, 0.0, 1.0]);
+        Self::new(x.narrow(), y.narrow(), z.narrow())
     }
 
-    /// `vector` made a unit vector, and rounded; `fallback` where it has no direction.
+    /// Unit vectors in the directions of these, or `fallback`; as [`glam::DVec3::normalize_or`].
     #[inline(always)]
-    pub fn unit([x, y, z]: [L::Doubles; 3], fallback: [f64; 3]) -> Self {
+    pub fn unit_or([x, y, z]: [L::Doubles; 3], fallback: [f64; 3]) -> [L::Doubles; 3] {
         let length = (x * x + y * y + z * z).sqrt();
         let inverse = L::Doubles::splat(1.0) / length;
         let works = inverse.is_positive_and_finite();
-        let [fx, fy, fz] = fallback.map(L::Doubles::splat);
+        [
+            (x * inverse).or_where_zero(works, L::Doubles::splat(fallback[0])),
+            (y * inverse).or_where_zero(works, L::Doubles::splat(fallback[1])),
+            (z * inverse).or_where_zero(works, L::Doubles::splat(fallback[2])),
+        ]
+    }
+
+    /// The components in double precision.
+    #[inline(always)]
+    pub fn widen(self) -> [L::Doubles; 3] {
+        [
+            L::Doubles::widen(self.x),
+            L::Doubles::widen(self.y),
+            L::Doubles::widen(self.z),
+        ]
+    }
+
+    /// The larger of each pair of components.
+    #[inline(always)]
+    pub fn max(self, other: Self) -> Self {
         Self::new(
-            (x * inverse).or_where_zero(works, fx).narrow(),
-            (y * inverse).or_where_zero(works, fy).narrow(),
-            (z * inverse).or_where_zero(works, fz).narrow(),
+            self.x.max(other.x),
+            self.y.max(other.y),
+            self.z.max(other.z),
         )
+    }
+
+    /// Plus a number.
+    #[inline(always)]
+    pub fn offset(self, by: L) -> Self {
+        Self::new(self.x + by, self.y + by, self.z + by)
     }
 }
 
@@ -165,7 +160,7 @@ impl<L: Lanes> Add for Vec3Lanes<L> {
 
     #[inline(always)]
     fn add(self, other: Self) -> Self {
-        self.zip(other, |a, b| a + b)
+        Self::new(self.x + other.x, self.y + other.y, self.z + other.z)
     }
 }
 
@@ -174,7 +169,7 @@ impl<L: Lanes> Sub for Vec3Lanes<L> {
 
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
-        self.zip(other, |a, b| a - b)
+        Self::new(self.x - other.x, self.y - other.y, self.z - other.z)
     }
 }
 
@@ -183,6 +178,6 @@ impl<L: Lanes> Mul for Vec3Lanes<L> {
 
     #[inline(always)]
     fn mul(self, other: Self) -> Self {
-        self.zip(other, |a, b| a * b)
+        Self::new(self.x * other.x, self.y * other.y, self.z * other.z)
     }
 }

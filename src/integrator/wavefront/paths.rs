@@ -1,0 +1,92 @@
+use glam::Vec3;
+
+use super::super::path::{EmissionWeight, Path};
+use crate::color::Rgb;
+use crate::math::Ray;
+use crate::sampling::PathSampler;
+
+/// Paths on their way, all after the same number of bounces: the ray that each is to take next, and
+/// what it carries. 32 bytes each, so that eight of one kind are a square of numbers.
+#[derive(Debug, Default)]
+pub(super) struct Paths {
+    pub(super) rays: Vec<Ray>,
+    pub(super) states: Vec<PathState>,
+}
+
+/// What a path carries.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(32))]
+pub(super) struct PathState {
+    pub(super) throughput: Rgb,
+    /// Number of the path in its batch.
+    pub(super) id: u32,
+    /// Where the ray left, for [`EmissionWeight::Shared`].
+    pub(super) from: Vec3,
+    /// The density that [`EmissionWeight::Shared`] has, or [`FULL`] or [`NONE`].
+    pub(super) scatter_pdf: f32,
+}
+
+/// [`EmissionWeight::Full`] in place of a density.
+pub(super) const FULL: f32 = f32::INFINITY;
+/// [`EmissionWeight::None`] in place of a density.
+pub(super) const NONE: f32 = -1.0;
+
+impl Paths {
+    pub(super) fn clear(&mut self) {
+        self.rays.clear();
+        self.states.clear();
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.rays.len()
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.rays.is_empty()
+    }
+
+    /// Adds `path`, number `id` of the batch.
+    pub(super) fn push(&mut self, id: u32, path: &Path) {
+        let (from, scatter_pdf) = match path.emission_weight {
+            EmissionWeight::Full => (Vec3::ZERO, FULL),
+            EmissionWeight::None => (Vec3::ZERO, NONE),
+            EmissionWeight::Shared { from, scatter_pdf } => (from, scatter_pdf),
+        };
+        self.rays.push(path.ray);
+        self.states.push(PathState {
+            throughput: path.throughput,
+            id,
+            from,
+            scatter_pdf,
+        });
+    }
+
+    /// Path `index` after `bounce` bounces, with `radiance` gathered so far.
+    pub(super) fn path(
+        &self,
+        index: usize,
+        bounce: u32,
+        sampler: PathSampler,
+        radiance: Rgb,
+    ) -> Path {
+        let state = &self.states[index];
+        let emission_weight = if state.scatter_pdf == FULL {
+            EmissionWeight::Full
+        } else if state.scatter_pdf == NONE {
+            EmissionWeight::None
+        } else {
+            EmissionWeight::Shared {
+                from: state.from,
+                scatter_pdf: state.scatter_pdf,
+            }
+        };
+        Path {
+            sampler,
+            ray: self.rays[index],
+            throughput: state.throughput,
+            radiance,
+            bounce,
+            emission_weight,
+        }
+    }
+}

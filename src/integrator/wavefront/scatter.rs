@@ -1,0 +1,103 @@
+use std::f32::consts::FRAC_1_PI;
+
+use glam::Vec3;
+
+use super::super::path::{MIN_SURVIVAL, TRAPPED_AFTER, TRAPPED_SURVIVAL};
+use super::paths::{NONE, PathState};
+use super::shade::{Group, Shade};
+use crate::math::{LANES, Lanes, Ray, Vec3Lanes, offset_origin_lanes};
+use crate::sampling::{Slot, cosine_hemisphere_lanes};
+
+impl Shade<'_, '_> {
+    /// Sends the paths of a group on, as [`super::PathTracer::scatter`] does from diffuse surfaces.
+    #[inline(always)]
+    pub(super) fn scatter<L: Lanes>(&mut self, group: &Group<L>) {
+        let shares_emission = self.tracer.shares_emission();
+        if self.bounce + 1 >= self.tracer.settings.max_depth.0 && !shares_emission {
+            return;
+        }
+        let mut local = cosine_hemisphere_lanes(self.numbers::<L>(group, Slot::Scatter));
+        let zero = L::splat(0.0);
+        let size = local.z;
+        local.z = L::select(group.wo_z.lt(zero), local.z.neg(), local.z);
+        let is_same_side =
+            (group.wo_z.gt(zero) & local.z.gt(zero)) | (group.wo_z.lt(zero) & local.z.lt(zero));
+        let pdf = size * L::splat(FRAC_1_PI);
+        let direction = (group.frame.to_world(local)).normalize_or(Vec3Lanes::splat(Vec3::ZERO));
+        let normal = group.surface.geometric_normal;
+        let mut alive = is_same_side & pdf.gt(zero) & (direction.dot(normal) * local.z).gt(zero);
+        let weight = (group.surface.reflectance.scale(L::splat(FRAC_1_PI))).scale(size / pdf);
+        let mut throughput = group.throughput * weight;
+        alive = alive & throughput.max_element().gt(zero);
+        if self.bounce >= 1 {
+            let [u, _] = self.numbers::<L>(group, Slot::Roulette);
+            let most = if self.bounce + 1 < TRAPPED_AFTER {
+                1.0
+            } else {
+                TRAPPED_SURVIVAL
+            };
+            let survival = throughput
+                .max_element()
+                .max(L::splat(MIN_SURVIVAL))
+                .min(L::splat(most));
+            alive = alive & u.lt(survival);
+            throughput = Vec3Lanes::new(
+                throughput.x / survival,
+                throughput.y / survival,
+                throughput.z / survival,
+            );
+        }
+        let origin = offset_origin_lanes(
+            group.surface.departure,
+            group.surface.error,
+            normal,
+            direction,
+        );
+        let bits = L::bits(alive) & group.lanes;
+        let from = if shares_emission {
+            group.surface.point
+        } else {
+            Vec3Lanes::splat(Vec3::ZERO)
+        };
+        let pdf = if shares_emission { pdf } else { L::splat(NONE) };
+        self.go_on(group, bits, [origin, direction, throughput, from], pdf);
+    }
+
+    #[inline(always)]
+    fn go_on<L: Lanes>(
+        &mut self,
+        group: &Group<L>,
+        lanes: u32,
+        [origin, direction, throughput, from]: [Vec3Lanes<L>; 4],
+        pdf: L,
+    ) {
+        let (origin, direction) = (origin.store(), direction.store());
+        let (throughput, from, pdf) = (throughput.store(), from.store(), pdf.to_array());
+        for lane in (0..LANES).filter(|lane| lanes >> lane & 1 == 1) {
+            let ray = Ray::new(origin.get(lane), direction.get(lane));
+            self.next.rays.push(ray);
+            self.next.states.push(PathState {
+                throughput: throughput.get(lane),
+                id: self.paths.states[group.first + lane].id,
+                from: from.get(lane),
+                scatter_pdf: pdf[lane],
+            });
+        }
+    }
+
+    /// Two random numbers of each path of a group.
+    #[inline(always)]
+    fn numbers<L: Lanes>(&self, group: &Group<L>, slot: Slot) -> [L; 2] {
+        let mut numbers = [[0.5; LANES]; 2];
+        for (lane, state) in self.paths.states[group.first..]
+            .iter()
+            .enumerate()
+            .take(LANES)
+        {
+            let u = self.samplers[state.id as usize].get_2d(self.bounce, slot);
+            numbers[0][lane] = u.x;
+            numbers[1][lane] = u.y;
+        }
+        [L::load(&numbers[0]), L::load(&numbers[1])]
+    }
+}

@@ -1,0 +1,182 @@
+use glam::Vec3;
+
+use crate::geometry::{Hit, is_clear_of_edges, triangle_departure};
+use crate::math::{DoubleLanes, LANES, Lanes, Ray, Vec3Array, Vec3Lanes, gamma};
+use crate::scene::PreparedScene;
+
+/// Up to eight plain surface points, each with the bits of [`PreparedScene::interaction`].
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SurfaceLanes<L> {
+    pub(super) point: Vec3Lanes<L>,
+    pub(super) departure: Vec3Lanes<L>,
+    pub(super) error: Vec3Lanes<L>,
+    pub(super) geometric_normal: Vec3Lanes<L>,
+    pub(super) shading_normal: Vec3Lanes<L>,
+    pub(super) reflectance: Vec3Lanes<L>,
+}
+
+/// What single steps have looked up for eight hits.
+#[derive(Debug)]
+pub(super) struct Found {
+    /// A bit for each lane that holds a plain surface.
+    pub(super) lanes: u32,
+    spheres: u32,
+    smooth: u32,
+    /// Of triangles; of spheres the centres, and the radius in all components.
+    vertices: [Vec3Array; 3],
+    /// At the vertices of smooth triangles.
+    normals: [Vec3Array; 3],
+    reflectance: Vec3Array,
+    weights: [[f32; LANES]; 2],
+    /// Of rays that met spheres, where they did.
+    met: Vec3Array,
+}
+
+impl Found {
+    /// Looks up the surfaces of up to eight `hits` by `rays`.
+    #[inline(always)]
+    pub(super) fn new(scene: &PreparedScene, rays: &[Ray], hits: &[Hit]) -> Self {
+        let shapes = scene.aggregate().shapes();
+        let mut found = Self {
+            lanes: 0,
+            spheres: 0,
+            smooth: 0,
+            vertices: [Vec3Array::ZERO; 3],
+            normals: [Vec3Array::ZERO; 3],
+            reflectance: Vec3Array::ZERO,
+            weights: [[0.0; LANES]; 2],
+            met: Vec3Array::ZERO,
+        };
+        for (lane, (ray, hit)) in rays.iter().zip(hits).enumerate().take(LANES) {
+            let Some(reflectance) = scene.plain_reflectance(hit.primitive) else {
+                continue;
+            };
+            let bit = 1 << lane;
+            found.lanes |= bit;
+            found.reflectance.set(lane, reflectance);
+            if let Some(sphere) = shapes.sphere(hit.primitive) {
+                found.spheres |= bit;
+                found.vertices[0].set(lane, sphere.center);
+                found.vertices[1].set(lane, Vec3::splat(sphere.radius));
+                found.met.set(lane, ray.at(hit.t));
+                continue;
+            }
+            let vertices = shapes.vertices(hit.primitive as usize);
+            for (to, vertex) in found.vertices.iter_mut().zip(vertices) {
+                to.set(lane, vertex);
+            }
+            found.weights[0][lane] = hit.b1;
+            found.weights[1][lane] = hit.b2;
+            if let Some(normals) = scene.corner_normals(hit.primitive) {
+                found.smooth |= bit;
+                for (to, normal) in found.normals.iter_mut().zip(normals) {
+                    to.set(lane, normal);
+                }
+            }
+        }
+        found
+    }
+
+    /// The surfaces.
+    #[inline(always)]
+    pub(super) fn surfaces<L: Lanes>(&self) -> SurfaceLanes<L> {
+        let mut surface = self.triangles::<L>();
+        if self.spheres != 0 {
+            self.add_spheres(&mut surface);
+        }
+        if self.smooth != 0 {
+            let (b1, b2) = (L::load(&self.weights[0]), L::load(&self.weights[1]));
+            let b0 = L::splat(1.0) - b1 - b2;
+            let smooth = Vec3Lanes::load(&self.normals[0]).scale(b0)
+                + Vec3Lanes::load(&self.normals[1]).scale(b1)
+                + Vec3Lanes::load(&self.normals[2]).scale(b2);
+            surface.shading_normal = Vec3Lanes::select(
+                L::mask_of_bits(self.smooth),
+                smooth.normalize_or(surface.geometric_normal),
+                surface.geometric_normal,
+            );
+        }
+        surface
+    }
+
+    #[inline(always)]
+    fn triangles<L: Lanes>(&self) -> SurfaceLanes<L> {
+        let a = Vec3Lanes::<L>::load(&self.vertices[0]);
+        let b = Vec3Lanes::load(&self.vertices[1]);
+        let c = Vec3Lanes::load(&self.vertices[2]);
+        let (b1, b2) = (L::load(&self.weights[0]), L::load(&self.weights[1]));
+        let b0 = L::splat(1.0) - b1 - b2;
+        let (wa, wb, wc) = (a.scale(b0), b.scale(b1), c.scale(b2));
+        let point = wa + wb + wc;
+        let reach = (a - point)
+            .abs()
+            .max((b - point).abs())
+            .max((c - point).abs());
+        let error = (wa.abs() + wb.abs() + wc.abs())
+            .scale(L::splat(gamma(7)))
+            .offset(reach.max_element() * L::splat(gamma(8)));
+        let (ab, ac, bc) = (b - a, c - a, c - b);
+        let normal = ab.unit_cross(ac);
+        let mut surface = SurfaceLanes {
+            point,
+            departure: point,
+            error,
+            geometric_normal: normal,
+            shading_normal: normal,
+            reflectance: Vec3Lanes::load(&self.reflectance),
+        };
+        let longest = ab
+            .length_squared()
+            .max(ac.length_squared())
+            .max(bc.length_squared());
+        let clear = L::bits(is_clear_of_edges([b0, b1, b2], longest, error));
+        let near = self.lanes & !self.spheres & !clear;
+        if near != 0 {
+            let (departure, error) = self.depart(near, &point.store(), &error.store());
+            surface.departure = Vec3Lanes::load(&departure);
+            surface.error = Vec3Lanes::load(&error);
+        }
+        surface
+    }
+
+    /// The points of departure and their errors, those of `lanes`, which are close to an edge, one by
+    /// one.
+    #[cold]
+    #[inline(never)]
+    fn depart(&self, lanes: u32, points: &Vec3Array, errors: &Vec3Array) -> (Vec3Array, Vec3Array) {
+        let (mut departures, mut bounds) = (*points, *errors);
+        for lane in (0..LANES).filter(|lane| lanes >> lane & 1 == 1) {
+            let vertices = self.vertices.map(|vertex| vertex.get(lane));
+            let [b1, b2] = self.weights.map(|weights| weights[lane]);
+            let at = (points.get(lane), errors.get(lane));
+            let (departure, bound) = triangle_departure(&vertices, b1, b2, at);
+            departures.set(lane, departure);
+            bounds.set(lane, bound);
+        }
+        (departures, bounds)
+    }
+
+    /// As [`crate::geometry::Sphere::point_and_error`].
+    #[inline(always)]
+    fn add_spheres<L: Lanes>(&self, surface: &mut SurfaceLanes<L>) {
+        let center = Vec3Lanes::<L>::load(&self.vertices[0]);
+        let radius = Vec3Lanes::<L>::load(&self.vertices[1]).x;
+        let [mx, my, mz] = Vec3Lanes::<L>::load(&self.met).widen();
+        let [cx, cy, cz] = center.widen();
+        let [x, y, z] = Vec3Lanes::<L>::unit_or([mx - cx, my - cy, mz - cz], [0.0; 3]);
+        let wide_radius = L::Doubles::widen(radius);
+        let point = Vec3Lanes::new(
+            (cx + x * wide_radius).narrow(),
+            (cy + y * wide_radius).narrow(),
+            (cz + z * wide_radius).narrow(),
+        );
+        let error = point.abs().offset(radius).scale(L::splat(gamma(2)));
+        let normal = (point - center).normalize_or(Vec3Lanes::splat(Vec3::Z));
+        let is_sphere = L::mask_of_bits(self.spheres);
+        surface.point = Vec3Lanes::select(is_sphere, point, surface.point);
+        surface.departure = Vec3Lanes::select(is_sphere, point, surface.departure);
+        surface.error = Vec3Lanes::select(is_sphere, error, surface.error);
+        surface.geometric_normal = Vec3Lanes::select(is_sphere, normal, surface.geometric_normal);
+        surface.shading_normal = surface.geometric_normal;
+    }
+}
