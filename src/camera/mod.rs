@@ -1,6 +1,7 @@
 //! Floor 3: the camera. `Camera` is what people edit, in file coordinates and double precision;
 //! `RayCamera` makes rays in tracing space.
 
+mod lanes;
 mod ray_camera;
 
 pub use ray_camera::RayCamera;

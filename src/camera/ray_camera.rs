@@ -1,4 +1,4 @@
-use glam::{DVec2, DVec3, Vec2};
+use glam::{DVec2, DVec3, Vec2, Vec3};
 
 use super::Camera;
 use crate::math::{Normalization, Ray};
@@ -7,14 +7,14 @@ use crate::math::{Normalization, Ray};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayCamera {
     eye: DVec3,
-    right: DVec3,
-    up: DVec3,
-    forward: DVec3,
-    half_width: f64,
-    half_height: f64,
-    width: f64,
-    height: f64,
-    lens_radius: f64,
+    pub(super) right: DVec3,
+    pub(super) up: DVec3,
+    pub(super) forward: DVec3,
+    pub(super) half_width: f64,
+    pub(super) half_height: f64,
+    pub(super) width: f64,
+    pub(super) height: f64,
+    pub(super) lens_radius: f64,
     focal_distance: f64,
 }
 
@@ -46,6 +46,11 @@ impl RayCamera {
         Ray::new(origin.as_vec3(), direction.as_vec3())
     }
 
+    /// Where the rays of a camera without a lens start, in tracing space.
+    pub fn eye(&self) -> Vec3 {
+        self.eye.as_vec3()
+    }
+
     /// Origin and unit direction of [`Self::generate_ray`] in double precision.
     pub fn generate_ray_f64(
         &self,
@@ -73,7 +78,6 @@ fn unit(direction: DVec3) -> DVec3 {
 mod tests {
     use super::*;
     use crate::camera::Framing;
-    use glam::Vec3;
 
     fn camera(lens_radius: f64) -> RayCamera {
         let camera = Camera {

@@ -134,9 +134,14 @@ impl<'a> PathTracer<'a> {
         }
     }
 
+    /// The random numbers of a path.
+    pub(super) fn sampler(&self, id: PathId) -> PathSampler {
+        PathSampler::new(self.settings.seed, id.pixel, id.sample)
+    }
+
     /// The start of a path: its camera ray through a uniform point of the pixel (box filter).
     pub fn start(&self, id: PathId) -> Path {
-        let sampler = PathSampler::new(self.settings.seed, id.pixel, id.sample);
+        let sampler = self.sampler(id);
         let pixel = Vec2::new(id.pixel[0] as f32, id.pixel[1] as f32);
         let position = pixel + sampler.get_2d(0, Slot::Pixel);
         let ray = self

@@ -8,6 +8,7 @@ mod paths;
 mod queue;
 mod scatter;
 mod shade;
+mod start;
 mod surface;
 
 use super::path::{Path, Vertex};
@@ -19,6 +20,7 @@ use crate::sampling::PathSampler;
 use paths::Paths;
 use queue::DirectQueues;
 use shade::Shade;
+use start::Start;
 
 /// Paths in one batch: enough to keep the tracing kernel busy, few enough that a batch ends within
 /// some milliseconds when a render is cancelled and that the arrays stay in the cache.
@@ -77,10 +79,19 @@ impl Wavefront {
     fn start(&mut self, tracer: &PathTracer<'_>, ids: &[PathId]) {
         self.paths.clear();
         self.samplers.clear();
-        for (id, &path) in ids.iter().enumerate() {
-            let path = tracer.start(path);
-            self.samplers.push(path.sampler);
-            self.paths.push(id as u32, &path);
+        self.samplers
+            .extend(ids.iter().map(|&id| tracer.sampler(id)));
+        if tracer.camera.is_pinhole() {
+            let start = Start {
+                tracer,
+                ids,
+                samplers: &self.samplers,
+                paths: &mut self.paths,
+            };
+            return run_lanes(tracer.scene.aggregate().isa(), start);
+        }
+        for (number, &id) in ids.iter().enumerate() {
+            self.paths.push(number as u32, &tracer.start(id));
         }
     }
 

@@ -1,0 +1,44 @@
+use super::paths::{FULL, PathState, Paths};
+use super::{PathId, PathTracer};
+use crate::color::Rgb;
+use crate::math::{LANES, LaneKernel, Lanes, Ray};
+use crate::sampling::{PathSampler, Slot};
+use glam::Vec3;
+
+/// The camera rays of a batch, as [`PathTracer::start`] makes them, for cameras without a lens.
+pub(super) struct Start<'a, 's> {
+    pub(super) tracer: &'a PathTracer<'s>,
+    pub(super) ids: &'a [PathId],
+    pub(super) samplers: &'a [PathSampler],
+    pub(super) paths: &'a mut Paths,
+}
+
+impl LaneKernel for Start<'_, '_> {
+    type Answer = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let camera = self.tracer.camera;
+        let eye = camera.eye();
+        let groups = self.ids.chunks(LANES).zip(self.samplers.chunks(LANES));
+        for (group, (ids, samplers)) in groups.enumerate() {
+            let mut position = [[0.0; LANES]; 2];
+            for (lane, (id, sampler)) in ids.iter().zip(samplers).enumerate() {
+                let u = sampler.get_2d(0, Slot::Pixel);
+                position[0][lane] = id.pixel[0] as f32 + u.x;
+                position[1][lane] = id.pixel[1] as f32 + u.y;
+            }
+            let position = [L::load(&position[0]), L::load(&position[1])];
+            let directions = camera.directions_lanes(position).store();
+            for lane in 0..ids.len() {
+                self.paths.rays.push(Ray::new(eye, directions.get(lane)));
+                self.paths.states.push(PathState {
+                    throughput: Rgb::ONE,
+                    id: (group * LANES + lane) as u32,
+                    from: Vec3::ZERO,
+                    scatter_pdf: FULL,
+                });
+            }
+        }
+    }
+}
