@@ -21,13 +21,13 @@ impl PixelStats {
     /// Adds one sample of finite radiance.
     pub fn add(&mut self, radiance: Rgb) {
         self.count += 1;
-        let n = f64::from(self.count);
+        let share = 1.0 / f64::from(self.count);
         let radiance_luminance = luminance_f64(radiance.to_array().map(f64::from));
         let luminance_before = radiance_luminance - luminance_f64(self.mean);
         for (channel, x) in radiance.to_array().into_iter().enumerate() {
             let x = f64::from(x);
             let before = x - self.mean[channel];
-            self.mean[channel] += before / n;
+            self.mean[channel] += before * share;
             self.deviation[channel] += before * (x - self.mean[channel]);
         }
         self.luminance_deviation +=
