@@ -1,11 +1,16 @@
 //! Direct light at a vertex: which samples are taken, and the rays they ask for.
 
+use glam::Vec2;
+
 use super::path::{Path, Vertex};
 use super::{PathSettings, PathTracer};
 use crate::color::Rgb;
 use crate::geometry::Hit;
+use crate::light::LightSample;
 use crate::math::{Ray, SHADOW_T_MAX, gamma, offset_origin};
-use crate::sampling::{Slot, UNIFORM_HEMISPHERE_PDF, power_heuristic, uniform_hemisphere};
+use crate::sampling::{
+    PathSampler, Slot, UNIFORM_HEMISPHERE_PDF, power_heuristic, uniform_hemisphere,
+};
 use crate::scene::PreparedScene;
 use crate::settings::Mode;
 
@@ -14,7 +19,7 @@ use crate::settings::Mode;
 pub(super) enum DirectSample {
     /// Light `light` of the scene, weighted 1 / (samples of this light).
     Light { light: u32, weight: f32 },
-    /// A light chosen by power, shared with the scattered ray by multiple importance.
+    /// A part of a light chosen for the vertex, shared with the scattered ray by multiple importance.
     AnyLight { weight: f32 },
     /// A uniform direction of the hemisphere; what it meets is taken as it is.
     Hemisphere { weight: f32 },
@@ -45,10 +50,10 @@ impl DirectPlan {
         let samples = match settings.mode {
             _ if settings.max_depth.0 == 0 => Vec::new(),
             Mode::Importance => lights.iter().copied().flat_map(per_light).collect(),
-            Mode::Best if lights.is_empty() => Vec::new(),
             Mode::Best if scene.is_course_compatible() => {
                 lights.iter().copied().flat_map(per_light).collect()
             }
+            Mode::Best if scene.light_sampler().is_empty() => Vec::new(),
             Mode::Best => vec![
                 DirectSample::AnyLight {
                     weight: 1.0 / n as f32
@@ -96,6 +101,12 @@ pub(super) enum DirectRay {
     Gather { ray: Ray, factor: Rgb },
 }
 
+/// What chooses inside a light and the place there, for light sample `number` at a vertex.
+pub(super) fn light_numbers(sampler: PathSampler, bounce: u32, number: u32) -> (f32, Vec2) {
+    let choice = sampler.get_2d(bounce, Slot::LightChoice(number));
+    (choice.y, sampler.get_2d(bounce, Slot::LightPoint(number)))
+}
+
 impl PathTracer<'_> {
     /// True when direct light at the vertex that `path` has reached is part of the picture.
     pub(super) fn wants_direct(&self, path: &Path, vertex: &Vertex<'_>) -> bool {
@@ -111,12 +122,23 @@ impl PathTracer<'_> {
     ) -> Option<DirectRay> {
         match self.plan.samples[number as usize] {
             DirectSample::Light { light, weight } => {
-                self.shadow_ray(path, vertex, number, light, weight)
+                let (u_part, u) = light_numbers(path.sampler, path.bounce, number);
+                let from = vertex.surface.point;
+                let sample =
+                    (self.scene.light(light)).sample(self.scene.shapes(), from, u_part, u)?;
+                self.shadow_ray(path, vertex, &sample, weight)
             }
             DirectSample::AnyLight { weight } => {
                 let u = path.sampler.get_1d(path.bounce, Slot::LightChoice(number));
-                let (light, pmf) = self.scene.choose_light(u)?;
-                self.shadow_ray(path, vertex, number, light, weight / pmf)
+                let from = vertex.surface.point;
+                let choice = (self.scene.light_sampler()).sample(from, vertex.lit_normal(), u)?;
+                let numbers = light_numbers(path.sampler, path.bounce, number);
+                let (light, part) = (self.scene.light(choice.light), choice.part as usize);
+                let sample = light.sample_part(self.scene.shapes(), part, from, numbers)?;
+                let pdf = choice.pmf * sample.pdf;
+                (pdf > 0.0)
+                    .then(|| LightSample { pdf, ..sample })
+                    .and_then(|sample| self.shadow_ray(path, vertex, &sample, weight))
             }
             DirectSample::Hemisphere { weight } => {
                 let mut local =
@@ -136,23 +158,14 @@ impl PathTracer<'_> {
         }
     }
 
+    /// The shadow ray to `sample`, whose density counts the choice of its light.
     fn shadow_ray(
         &self,
         path: &Path,
         vertex: &Vertex<'_>,
-        number: u32,
-        light: u32,
+        sample: &LightSample,
         weight: f32,
     ) -> Option<DirectRay> {
-        let u = path.sampler.get_2d(path.bounce, Slot::LightPoint(number));
-        let u_part = path
-            .sampler
-            .get_2d(path.bounce, Slot::LightChoice(number))
-            .y;
-        let sample =
-            self.scene
-                .light(light)
-                .sample(self.scene.shapes(), vertex.surface.point, u_part, u)?;
         let local = vertex.local(sample.wi)?;
         let scattered = vertex.bsdf.eval(vertex.wo, local) * local.z.abs();
         let mut contribution =
@@ -162,8 +175,7 @@ impl PathTracer<'_> {
         }
         if self.shares_emission() && !sample.is_delta {
             let n = self.settings.light_samples as f32;
-            let light_pdf = n * sample.pdf * self.scene.light_pmf(light);
-            contribution *= power_heuristic(light_pdf, vertex.bsdf.pdf(vertex.wo, local));
+            contribution *= power_heuristic(n * sample.pdf, vertex.bsdf.pdf(vertex.wo, local));
         }
         let origin = vertex.origin(sample.wi);
         let ray = if sample.distance.is_finite() {

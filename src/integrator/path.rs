@@ -62,8 +62,12 @@ pub(super) enum EmissionWeight {
     /// The direct light estimator of the last vertex has counted it.
     None,
     /// Shared with the light samples of the last vertex, from where the ray left with this
-    /// solid-angle density.
-    Shared { from: Vec3, scatter_pdf: f32 },
+    /// solid-angle density, on the side of `normal`.
+    Shared {
+        from: Vec3,
+        normal: Vec3,
+        scatter_pdf: f32,
+    },
 }
 
 /// A path on its way.
@@ -97,6 +101,15 @@ impl Vertex<'_> {
     pub(super) fn local(&self, wi: Vec3) -> Option<Vec3> {
         let local = self.frame.to_local(wi);
         (local.z * wi.dot(self.surface.geometric_normal) > 0.0).then_some(local)
+    }
+
+    /// The shading normal on the side from which light is reflected.
+    pub(super) fn lit_normal(&self) -> Vec3 {
+        if self.wo.z < 0.0 {
+            -self.surface.shading_normal
+        } else {
+            self.surface.shading_normal
+        }
     }
 
     /// Where a ray towards `direction` starts.
@@ -162,15 +175,15 @@ impl<'a> PathTracer<'a> {
         let direction = path.ray.direction;
         if hit.is_miss() {
             let radiance = self.scene.environment_radiance(direction, path.bounce == 0);
-            self.add_emission(path, radiance, |from| {
+            self.add_emission(path, radiance, |(from, _)| {
                 self.scene.environment_pdf(from, direction)
             });
             return None;
         }
         let surface = self.scene.interaction(&path.ray, hit);
         let emitted = self.scene.emitted(&surface, -direction);
-        self.add_emission(path, emitted, |from| {
-            self.scene.light_pdf(from, direction, &surface, hit.t)
+        self.add_emission(path, emitted, |place| {
+            self.scene.light_pdf(place, direction, &surface, hit.t)
         });
         let bsdf = self.scene.bsdf(hit.primitive);
         if path.bounce >= self.settings.max_depth.0 || bsdf.is_black() {
@@ -179,16 +192,26 @@ impl<'a> PathTracer<'a> {
         Some(vertex(surface, -direction, bsdf))
     }
 
-    fn add_emission(&self, path: &mut Path, emitted: Rgb, light_pdf: impl FnOnce(Vec3) -> f32) {
+    /// `light_pdf` takes the point that the ray left, and the normal on that side.
+    fn add_emission(
+        &self,
+        path: &mut Path,
+        emitted: Rgb,
+        light_pdf: impl FnOnce((Vec3, Vec3)) -> f32,
+    ) {
         if emitted == Rgb::ZERO || !self.counts_depth(path.bounce) {
             return;
         }
         let weight = match path.emission_weight {
             EmissionWeight::None => return,
             EmissionWeight::Full => 1.0,
-            EmissionWeight::Shared { from, scatter_pdf } => power_heuristic(
+            EmissionWeight::Shared {
+                from,
+                normal,
                 scatter_pdf,
-                self.settings.light_samples as f32 * light_pdf(from),
+            } => power_heuristic(
+                scatter_pdf,
+                self.settings.light_samples as f32 * light_pdf((from, normal)),
             ),
         };
         path.radiance += path.throughput * emitted * weight;
@@ -224,6 +247,7 @@ impl<'a> PathTracer<'a> {
             Lobe::Delta => EmissionWeight::Full,
             _ if self.shares_emission() => EmissionWeight::Shared {
                 from: vertex.surface.point,
+                normal: vertex.lit_normal(),
                 scatter_pdf: sample.pdf,
             },
             _ => EmissionWeight::None,

@@ -2,7 +2,7 @@ use std::f32::consts::PI;
 
 use glam::{Vec2, Vec3};
 
-use super::{LightHit, LightSample, direction_to, usable_pdf};
+use super::{EmissionBounds, LightHit, LightSample, direction_to, usable_pdf};
 use crate::color::{Rgb, luminance};
 use crate::geometry::Shapes;
 use crate::sampling::{Distribution1d, uniform_triangle};
@@ -49,6 +49,8 @@ pub struct AreaLight {
     by_area: Option<Distribution1d>,
     /// The triangles or the rectangle, at hand for sampling.
     parts: Vec<Part>,
+    /// Primitive and part, by primitive.
+    by_primitive: Vec<(u32, u32)>,
 }
 
 /// A triangle or parallelogram of an area light.
@@ -59,16 +61,21 @@ struct Part {
     edge_2: Vec3,
     /// Unit; nothing for a part without area.
     normal: Option<Vec3>,
+    /// Of one side.
+    area: f32,
     primitive: u32,
 }
 
 impl Part {
-    fn new(corner: Vec3, edge_1: Vec3, edge_2: Vec3, primitive: u32) -> Self {
+    /// `share` is that of the parallelogram over the edges: a half for a triangle.
+    fn new([corner, edge_1, edge_2]: [Vec3; 3], share: f32, primitive: u32) -> Self {
+        let across = edge_1.cross(edge_2);
         Self {
             corner,
             edge_1,
             edge_2,
-            normal: edge_1.cross(edge_2).try_normalize(),
+            normal: across.try_normalize(),
+            area: share * across.length(),
             primitive,
         }
     }
@@ -80,23 +87,24 @@ impl AreaLight {
     /// The ids of [`AreaShape::Triangles`] must be of triangles of `shapes`. Degenerate triangles
     /// emit nothing.
     pub fn new(shapes: &Shapes, shape: AreaShape, radiance: Rgb, two_sided: bool) -> Self {
-        let (parts, share): (Vec<_>, f32) = match &shape {
+        let parts: Vec<_> = match &shape {
             AreaShape::Triangles { primitives } => {
-                let parts = primitives.iter().map(|&id| {
+                let part = |&id: &u32| {
                     let [p0, p1, p2] = shapes.vertices(id as usize);
-                    Part::new(p0, p1 - p0, p2 - p0, id)
-                });
-                (parts.collect(), 0.5)
+                    Part::new([p0, p1 - p0, p2 - p0], 0.5, id)
+                };
+                primitives.iter().map(part).collect()
             }
             &AreaShape::Rectangle {
                 corner,
                 edge_u,
                 edge_v,
-            } => (vec![Part::new(corner, edge_u, edge_v, u32::MAX)], 1.0),
+            } => vec![Part::new([corner, edge_u, edge_v], 1.0, u32::MAX)],
         };
-        let area = |part: &Part| share * part.edge_1.cross(part.edge_2).length();
-        let areas: Vec<f32> = parts.iter().map(area).collect();
+        let areas: Vec<f32> = parts.iter().map(|part| part.area).collect();
         let usable = areas.iter().filter(|area| area.is_finite());
+        let mut by_primitive: Vec<_> = parts.iter().map(|part| part.primitive).zip(0..).collect();
+        by_primitive.sort_unstable();
         Self {
             shape,
             radiance,
@@ -105,6 +113,7 @@ impl AreaLight {
             area: usable.map(|&area| f64::from(area)).sum::<f64>() as f32,
             by_area: Distribution1d::new(&areas),
             parts,
+            by_primitive,
         }
     }
 
@@ -145,34 +154,91 @@ impl AreaLight {
         self.area
     }
 
-    /// A point evenly spread over the area.
+    /// The number of triangles, or 1 for a rectangle.
+    pub fn part_count(&self) -> usize {
+        self.parts.len()
+    }
+
+    /// The part that `primitive` belongs to, as [`Self::choose_part`] counts them; `None` when it
+    /// is not of this light.
+    pub(super) fn part_of(&self, primitive: u32) -> Option<usize> {
+        if let AreaShape::Rectangle { .. } = self.shape {
+            return Some(0);
+        }
+        let place = (self.by_primitive).binary_search_by_key(&primitive, |entry| entry.0);
+        place.ok().map(|i| self.by_primitive[i].1 as usize)
+    }
+
+    /// Area of one side of part `part`, in scene units squared.
+    pub fn part_area(&self, part: usize) -> f32 {
+        self.parts[part].area
+    }
+
+    /// Where part `part` is and where it shines; `None` when it has no area.
+    pub(super) fn part_bounds(&self, part: usize) -> Option<EmissionBounds> {
+        let part = &self.parts[part];
+        let (a, b, c) = (part.corner, part.edge_1, part.edge_2);
+        let far = match self.shape {
+            AreaShape::Triangles { .. } => a,
+            AreaShape::Rectangle { .. } => a + b + c,
+        };
+        let intensity = part.area * luminance(self.radiance);
+        EmissionBounds::flat(
+            &[a, a + b, a + c, far],
+            part.normal?,
+            intensity,
+            self.two_sided,
+        )
+    }
+
+    /// A point of a part that is chosen by area.
     pub(super) fn sample(&self, from: Vec3, u_choice: f32, u: Vec2) -> Option<LightSample> {
-        let (point, normal, primitive) = self.point_on(u_choice, u)?;
+        let (part, pmf, _) = self.by_area.as_ref()?.sample(u_choice);
+        let sample = self.sample_part(part, from, u)?;
+        Some(LightSample {
+            pdf: usable_pdf(pmf * sample.pdf)?,
+            ..sample
+        })
+    }
+
+    /// The density of [`Self::sample`].
+    pub(super) fn pdf(&self, wi: Vec3, hit: LightHit) -> f32 {
+        let (Some(part), Some(by_area)) = (self.part_of(hit.primitive), &self.by_area) else {
+            return 0.0;
+        };
+        by_area.pmf(part) * self.pdf_part(part, wi, hit)
+    }
+
+    /// A point evenly spread over part `part`.
+    pub(super) fn sample_part(&self, part: usize, from: Vec3, u: Vec2) -> Option<LightSample> {
+        let (point, normal) = self.point_on(part, u)?;
         let (wi, distance) = direction_to(from, point)?;
         let hit = LightHit {
             point,
             normal,
             distance,
-            primitive,
+            primitive: self.parts[part].primitive,
         };
         Some(LightSample {
             wi,
             distance,
             radiance: self.radiance,
-            pdf: usable_pdf(self.pdf(wi, hit))?,
+            pdf: usable_pdf(self.pdf_part(part, wi, hit))?,
             is_delta: false,
             point,
             normal,
         })
     }
 
-    pub(super) fn pdf(&self, wi: Vec3, hit: LightHit) -> f32 {
-        let cos = self.emission_cosine(hit.normal, wi);
-        if !(cos > 0.0 && self.area > 0.0) {
+    /// The density of [`Self::sample_part`] for the direction `wi`, which meets the part at
+    /// `hit`.
+    pub(super) fn pdf_part(&self, part: usize, wi: Vec3, hit: LightHit) -> f32 {
+        let (cos, area) = (self.emission_cosine(hit.normal, wi), self.parts[part].area);
+        if !(cos > 0.0 && area > 0.0) {
             return 0.0;
         }
         // One factor at a time: the square of a tiny distance would vanish.
-        let per_distance = hit.distance / (self.area * cos);
+        let per_distance = hit.distance / (area * cos);
         match self.density {
             AreaDensity::Correct => per_distance * hit.distance,
             AreaDensity::Course => per_distance,
@@ -198,14 +264,14 @@ impl AreaLight {
         if self.two_sided { cos.abs() } else { cos }
     }
 
-    /// Point, unit normal and primitive.
-    fn point_on(&self, u_choice: f32, u: Vec2) -> Option<(Vec3, Vec3, u32)> {
-        let part = &self.parts[self.choose_part(u_choice)?];
+    /// Point and unit normal.
+    fn point_on(&self, part: usize, u: Vec2) -> Option<(Vec3, Vec3)> {
+        let part = &self.parts[part];
         let (b1, b2) = match self.shape {
             AreaShape::Triangles { .. } => uniform_triangle(u),
             AreaShape::Rectangle { .. } => (u.x, u.y),
         };
         let point = part.corner + b1 * part.edge_1 + b2 * part.edge_2;
-        Some((point, part.normal?, part.primitive))
+        Some((point, part.normal?))
     }
 }

@@ -2,6 +2,7 @@
 //! normalised space of the prepared scene, all directions are unit vectors.
 
 mod area;
+mod bounds;
 mod directional;
 mod environment;
 mod point;
@@ -10,6 +11,7 @@ mod sphere;
 mod spot;
 #[cfg(test)]
 mod tests;
+mod tree;
 
 use glam::{Vec2, Vec3};
 
@@ -20,9 +22,12 @@ pub use area::{AreaDensity, AreaLight, AreaShape};
 pub use directional::DirectionalLight;
 pub use environment::{EnvironmentLight, EnvironmentPart};
 pub use point::{PointFalloff, PointLight};
-pub use sampler::LightSampler;
+pub use sampler::{LightChoice, LightGroup, LightSampler};
 pub use sphere::SphereLight;
 pub use spot::SpotLight;
+pub use tree::{LightCluster, LightTree, Link};
+
+use bounds::EmissionBounds;
 
 /// An emitter of light.
 #[derive(Clone, Debug, PartialEq)]
@@ -121,6 +126,64 @@ impl Light {
         }
     }
 
+    /// The number of parts that are chosen one by one: the triangles or rectangles of an area
+    /// light, 1 for all others.
+    pub fn part_count(&self) -> usize {
+        match self {
+            Self::Area(area) => area.part_count(),
+            _ => 1,
+        }
+    }
+
+    /// The part that `primitive` of the scene belongs to; `None` when it is not of this light.
+    pub fn part_of(&self, primitive: u32) -> Option<usize> {
+        match self {
+            Self::Area(area) => area.part_of(primitive),
+            Self::Sphere(sphere) => (sphere.primitive == primitive).then_some(0),
+            _ => None,
+        }
+    }
+
+    /// As [`Self::sample`], from part `part` alone; `u_choice` is for lights of one part.
+    pub fn sample_part(
+        &self,
+        shapes: &Shapes,
+        part: usize,
+        from: Vec3,
+        (u_choice, u): (f32, Vec2),
+    ) -> Option<LightSample> {
+        match self {
+            Self::Area(area) => area.sample_part(part, from, u),
+            _ => self.sample(shapes, from, u_choice, u),
+        }
+    }
+
+    /// The density of [`Self::sample_part`], as [`Self::pdf`].
+    pub fn pdf_part(
+        &self,
+        shapes: &Shapes,
+        part: usize,
+        from: Vec3,
+        (wi, hit): (Vec3, LightHit),
+    ) -> f32 {
+        match self {
+            Self::Area(area) => area.pdf_part(part, wi, hit),
+            _ => self.pdf(shapes, from, wi, hit),
+        }
+    }
+
+    /// Where part `part` is and where it shines; `None` for what is dark, without extent, or from
+    /// infinity.
+    fn part_bounds(&self, shapes: &Shapes, part: usize) -> Option<EmissionBounds> {
+        match self {
+            Self::Area(area) => area.part_bounds(part),
+            Self::Sphere(sphere) => sphere.bounds(shapes),
+            Self::Point(point) => point.bounds(),
+            Self::Spot(spot) => spot.bounds(),
+            Self::Directional(_) | Self::Environment(_) => None,
+        }
+    }
+
     /// The radiance that the surface met at `hit` by a ray along `wi` sends back along it; black
     /// from the side that does not emit and for lights that are no surface.
     pub fn radiance_at(&self, hit: LightHit, wi: Vec3) -> Rgb {
@@ -159,6 +222,11 @@ impl Light {
     /// True when rays cannot meet the light, so that only sampling finds it.
     pub fn is_delta(&self) -> bool {
         matches!(self, Self::Point(_) | Self::Spot(_) | Self::Directional(_))
+    }
+
+    /// True for an environment without a picture: no direction is much brighter than others.
+    pub fn is_constant_sky(&self) -> bool {
+        matches!(self, Self::Environment(environment) if environment.map().is_none())
     }
 
     /// True when the light has no place in the scene.

@@ -2,7 +2,7 @@ use std::f32::consts::PI;
 
 use glam::Vec3;
 
-use super::{LightSample, direction_to};
+use super::{EmissionBounds, LightSample, direction_to};
 use crate::color::{Rgb, luminance};
 
 /// How the light of a point fades with the distance r.
@@ -36,6 +36,10 @@ impl PointLight {
 
     pub(super) fn power(&self) -> f32 {
         4.0 * PI * luminance(self.intensity)
+    }
+
+    pub(super) fn bounds(&self) -> Option<EmissionBounds> {
+        EmissionBounds::round(self.position, 0.0, luminance(self.intensity))
     }
 }
 

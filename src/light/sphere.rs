@@ -2,7 +2,7 @@ use std::f32::consts::PI;
 
 use glam::{Vec2, Vec3};
 
-use super::{LightHit, LightSample, usable_pdf};
+use super::{EmissionBounds, LightHit, LightSample, usable_pdf};
 use crate::color::{Rgb, luminance};
 use crate::geometry::{Shapes, Sphere};
 use crate::math::Frame;
@@ -78,6 +78,13 @@ impl SphereLight {
         let radius = shapes.sphere(self.primitive).map_or(0.0, |s| s.radius);
         let sides = if self.two_sided { 2.0 } else { 1.0 };
         PI * sides * 4.0 * PI * radius * radius * luminance(self.radiance)
+    }
+
+    /// From far away the sphere looks like a disk.
+    pub(super) fn bounds(&self, shapes: &Shapes) -> Option<EmissionBounds> {
+        let sphere = shapes.sphere(self.primitive)?;
+        let intensity = PI * sphere.radius * sphere.radius * luminance(self.radiance);
+        EmissionBounds::round(sphere.center, sphere.radius, intensity)
     }
 }
 

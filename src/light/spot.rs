@@ -2,8 +2,8 @@ use std::f32::consts::TAU;
 
 use glam::Vec3;
 
-use super::LightSample;
 use super::point::sample_point;
+use super::{EmissionBounds, LightSample};
 use crate::color::{Rgb, luminance};
 
 /// A point that shines into a cone, by a power of the cosine to its axis.
@@ -43,5 +43,10 @@ impl SpotLight {
         let e = self.exponent + 1.0;
         let rim = self.cos_half_angle.clamp(0.0, 1.0);
         TAU * (1.0 - rim.powf(e)) / e * luminance(self.intensity)
+    }
+
+    pub(super) fn bounds(&self) -> Option<EmissionBounds> {
+        let intensity = luminance(self.intensity);
+        EmissionBounds::cone(self.position, self.axis, self.cos_half_angle, intensity)
     }
 }

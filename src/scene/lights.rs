@@ -70,17 +70,14 @@ impl LightTable {
         self.add_sampled(Light::Area(light));
     }
 
-    /// Chooses among all lights by power. Course-compatible scenes sample every light instead.
+    /// Chooses among the parts of all lights. Course-compatible scenes sample every light instead.
     pub(super) fn sampler(&self, shapes: &Shapes) -> LightSampler {
-        if self.course_compatible {
-            return LightSampler::new(&[]);
-        }
-        let powers: Vec<f32> = self
-            .lights
-            .iter()
-            .map(|light| light.power(shapes, SCENE_RADIUS))
-            .collect();
-        LightSampler::new(&powers)
+        let lights: &[Light] = if self.course_compatible {
+            &[]
+        } else {
+            &self.lights
+        };
+        LightSampler::new(lights, shapes, SCENE_RADIUS)
     }
 }
 

@@ -215,36 +215,42 @@ impl PreparedScene {
         })
     }
 
-    /// Solid-angle density with which [`Self::choose_light`] and light sampling from `from` make
-    /// the unit `direction` in which `surface` lies at `distance`.
+    /// Solid-angle density with which the sampler of [`Self::light_sampler`] and sampling the part
+    /// that it chooses make the unit `direction` in which `surface` lies at `distance`, for a
+    /// surface at `from` lit on the side of the unit `normal`.
     pub fn light_pdf(
         &self,
-        from: Vec3,
+        (from, normal): (Vec3, Vec3),
         direction: Vec3,
         surface: &SurfaceInteraction,
         distance: f32,
     ) -> f32 {
-        let Some(light) = self.light_of(surface.primitive) else {
+        let Some(index) = self.light_of(surface.primitive) else {
             return 0.0;
         };
-        let pmf = self.light_pmf(light);
+        let light = self.light(index);
+        let Some(part) = light.part_of(surface.primitive) else {
+            return 0.0;
+        };
+        let pmf = self.light_sampler().pmf(from, normal, index, part as u32);
         if pmf == 0.0 {
             return 0.0;
         }
-        pmf * self
-            .light(light)
-            .pdf(self.shapes(), from, direction, light_hit(surface, distance))
+        let hit = light_hit(surface, distance);
+        pmf * light.pdf_part(self.shapes(), part, from, (direction, hit))
     }
 
     /// The same for the environment.
     pub fn environment_pdf(&self, from: Vec3, direction: Vec3) -> f32 {
-        let Some(light) = self.tables.environment else {
+        let Some(index) = self.tables.environment else {
             return 0.0;
         };
-        self.light_pmf(light)
-            * self
-                .light(light)
-                .pdf(self.shapes(), from, direction, LightHit::INFINITE)
+        let pmf = self.light_sampler().group_pmf(index);
+        if pmf == 0.0 {
+            return 0.0;
+        }
+        let light = self.light(index);
+        pmf * light.pdf(self.shapes(), from, direction, LightHit::INFINITE)
     }
 
     /// Light number `light`.
@@ -267,16 +273,9 @@ impl PreparedScene {
         &self.tables.sampled
     }
 
-    /// A light chosen in proportion to its power by `u` in [0, 1), and the probability of that.
-    pub fn choose_light(&self, u: f32) -> Option<(u32, f32)> {
-        let (index, pmf) = self.tables.sampler.sample(u);
-        (pmf > 0.0).then(|| (self.tables.sampled[index], pmf))
-    }
-
-    /// The probability with which [`Self::choose_light`] gives `light`.
-    pub fn light_pmf(&self, light: u32) -> f32 {
-        // The sampled lights are all lights, or (course-compatible) never chosen by power.
-        self.tables.sampler.pmf(light as usize)
+    /// Chooses among the parts of all lights; nothing in course-compatible scenes.
+    pub fn light_sampler(&self) -> &LightSampler {
+        &self.tables.sampler
     }
 
     /// The number of lights that uniform hemisphere directions stand in for, at least 1.

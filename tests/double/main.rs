@@ -52,6 +52,11 @@ fn delta_lights() {
 }
 
 #[test]
+fn a_tree_of_lights() {
+    agrees_in_all_modes(&scenes::many_lights());
+}
+
+#[test]
 fn environment_and_sky() {
     agrees_in_all_modes(&scenes::outdoors());
 }

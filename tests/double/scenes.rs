@@ -131,6 +131,44 @@ pub(crate) fn delta_lights() -> View {
     View::of_box(builder)
 }
 
+/// Some hundred lights of all kinds, enough for a tree of several levels, and a sun.
+pub(crate) fn many_lights() -> View {
+    let mut builder = SceneBuilder::new("many lights");
+    let white = builder.diffuse("white", Rgb::splat(0.7));
+    let rough = builder.surface("metal", metal(0.3));
+    let corner = DVec3::new(-2.0, 0.0, -2.0);
+    builder.quad("floor", corner, DVec3::Z * 4.0, DVec3::X * 4.0, white);
+    builder.sphere("ball", RIGHT, 0.34, white);
+    builder.sphere("metal", LEFT, 0.34, rough);
+    let point = LightKind::Point {
+        intensity: Rgb::new(0.02, 0.04, 0.03),
+    };
+    let spot = LightKind::Spot {
+        intensity: Rgb::new(0.3, 0.2, 0.1),
+        cone_angle: 1.2,
+        exponent: 1.0,
+    };
+    let sun = LightKind::Directional {
+        irradiance: Rgb::new(0.1, 0.1, 0.2),
+    };
+    builder.light("sun", sun, DMat4::from_rotation_x(-1.0));
+    for i in 0..150_u32 {
+        let (row, column) = (f64::from(i / 15), f64::from(i % 15));
+        let height = 1.2 + 0.3 * (row * 1.7 + column).sin();
+        let at = DVec3::new(-1.75 + 0.25 * column, height, -1.75 + 0.39 * row);
+        let glow = builder.emitter("glow", Rgb::new(1.0, 2.0, 4.0) * (1.0 + (i % 4) as f32));
+        let place = DMat4::from_translation(at);
+        match i % 5 {
+            0 => builder.light("point", point, place),
+            1 => builder.light("spot", spot, place * DMat4::from_rotation_x(-1.3)),
+            2 => builder.sphere("lamp", at, 0.03, glow),
+            3 => turned_box(&mut builder, at, DVec3::splat(0.04), glow),
+            _ => builder.quad("panel", at, DVec3::X * 0.1, DVec3::Z * 0.1, glow),
+        }
+    }
+    View::of_box(builder)
+}
+
 /// Sky, ambient light and a picture with a sun.
 pub(crate) fn outdoors() -> View {
     let mut builder = SceneBuilder::new("outdoors");

@@ -75,6 +75,11 @@ fn many_small_lights() {
 }
 
 #[test]
+fn lights_in_between() {
+    check_depths(&scenes::lights_in_between(), [MaxDepth(1), MaxDepth(3)]);
+}
+
+#[test]
 fn constant_sky() {
     check_depths(&scenes::constant_sky(), LONG);
 }

@@ -140,6 +140,36 @@ pub(crate) fn many_small_lights() -> View {
     two_spheres(builder, grey, grey)
 }
 
+/// A shelf of lights that look up, down and aside between the objects and the ceiling, so that most
+/// are behind most surfaces; more than one level of a tree.
+pub(crate) fn lights_in_between() -> View {
+    let mut builder = dark_box("lights in between");
+    for i in 0..72_u32 {
+        let at = DVec3::new(
+            -0.8 + 0.2 * f64::from(i % 9),
+            0.9 + 0.1 * f64::from(i % 2),
+            -0.8 + 0.2 * f64::from(i / 9),
+        );
+        let radiance = 3.0 * Rgb::new(1.0 + (i % 5) as f32, 4.0, 1.0 + (i % 7) as f32);
+        let light = builder.emitter("light", radiance);
+        let (u, v) = match i % 3 {
+            0 => (DVec3::X, DVec3::Z),
+            1 => (DVec3::Z, DVec3::X),
+            _ => (DVec3::Y, DVec3::Z),
+        };
+        builder.quad("light", at, 0.07 * u, 0.07 * v, light);
+    }
+    let grey = Surface::Diffuse {
+        reflectance: Rgb::splat(0.8),
+    };
+    let metal = Surface::Microfacet {
+        alpha: 0.4,
+        eta: Rgb::splat(1.1),
+        k: Rgb::splat(3.0),
+    };
+    two_spheres(builder, grey, metal)
+}
+
 /// A ground with a diffuse and a metal sphere under the open sky.
 fn outdoors(name: &str) -> (SceneBuilder, Camera) {
     let mut builder = SceneBuilder::new(name);

@@ -5,9 +5,9 @@ use glam::DVec3;
 use super::path::{Path, Vertex};
 use super::surface::{Surface, off_surface};
 use super::trace::{Ray, closest, is_occluded};
-use super::{bsdf, environment, light, warp};
+use super::{bsdf, environment, light, light_choice, warp};
 use crate::integrator::PathTracer;
-use crate::integrator::direct::DirectSample;
+use crate::integrator::direct::{DirectSample, light_numbers};
 use crate::light::Light;
 use crate::sampling::Slot;
 
@@ -18,19 +18,18 @@ const SHADOW_END: f64 = 1.0 - 1e-12;
 /// The light that arrives at `vertex` straight from lights, times the throughput: the sum of the
 /// samples of the plan.
 pub(super) fn direct_light(tracer: &PathTracer<'_>, path: &Path, vertex: &Vertex<'_>) -> DVec3 {
+    let (scene, from) = (tracer.scene, vertex.surface.point);
     let samples = tracer.plan.samples.iter().zip(0..);
     let sum = samples.map(|(sample, number)| match *sample {
         DirectSample::Light { light, weight } => {
-            from_light(tracer, path, vertex, number, light) * f64::from(weight)
+            let (u_part, u) = light_numbers(path.sampler, path.bounce, number);
+            let light = scene.light(light);
+            let sample = light::sample(light, scene.shapes(), from, u_part, u);
+            lit_by(tracer, vertex, sample) * f64::from(weight)
         }
         DirectSample::AnyLight { weight } => {
-            let u = path.sampler.get_1d(path.bounce, Slot::LightChoice(number));
-            tracer
-                .scene
-                .choose_light(u)
-                .map_or(DVec3::ZERO, |(light, pmf)| {
-                    from_light(tracer, path, vertex, number, light) * f64::from(weight / pmf)
-                })
+            let sample = any_light(tracer, path, vertex, number);
+            lit_by(tracer, vertex, sample) * f64::from(weight)
         }
         DirectSample::Hemisphere { weight } => {
             from_hemisphere(tracer, path, vertex, number) * f64::from(weight)
@@ -39,22 +38,33 @@ pub(super) fn direct_light(tracer: &PathTracer<'_>, path: &Path, vertex: &Vertex
     path.throughput * sum.sum::<DVec3>()
 }
 
-/// What a point of light `index` sends through the vertex.
-fn from_light(
+/// A direction to the part of a light that is chosen for the vertex; its density counts the choice.
+fn any_light(
     tracer: &PathTracer<'_>,
     path: &Path,
     vertex: &Vertex<'_>,
     number: u32,
-    index: u32,
+) -> Option<light::LightSample> {
+    let scene = tracer.scene;
+    let u = path.sampler.get_1d(path.bounce, Slot::LightChoice(number));
+    let place = (vertex.surface.point, vertex.lit_normal());
+    let (index, part, pmf) = light_choice::choose(scene.light_sampler(), place, u)?;
+    let numbers = light_numbers(path.sampler, path.bounce, number);
+    let sample = light::sample_part(scene.light(index), scene.shapes(), part, place.0, numbers)?;
+    Some(light::LightSample {
+        pdf: pmf * sample.pdf,
+        ..sample
+    })
+}
+
+/// What `sample` sends through the vertex.
+fn lit_by(
+    tracer: &PathTracer<'_>,
+    vertex: &Vertex<'_>,
+    sample: Option<light::LightSample>,
 ) -> DVec3 {
     let scene = tracer.scene;
-    let u = path.sampler.get_2d(path.bounce, Slot::LightPoint(number));
-    let u_part = path
-        .sampler
-        .get_2d(path.bounce, Slot::LightChoice(number))
-        .y;
-    let from = vertex.surface.point;
-    let Some(sample) = light::sample(scene.light(index), scene.shapes(), from, u_part, u) else {
+    let Some(sample) = sample else {
         return DVec3::ZERO;
     };
     let Some(wi) = vertex.local(sample.wi) else {
@@ -64,8 +74,7 @@ fn from_light(
     let mut light = value * wi.z.abs() * sample.radiance / sample.pdf;
     if tracer.shares_emission() && !sample.is_delta {
         let n = f64::from(tracer.settings.light_samples);
-        let light_pdf = n * sample.pdf * f64::from(scene.light_pmf(index));
-        light *= warp::power_heuristic(light_pdf, scatter_pdf);
+        light *= warp::power_heuristic(n * sample.pdf, scatter_pdf);
     }
     let origin = vertex.surface.leave(sample.wi);
     let shadow_ray = match sample.end {

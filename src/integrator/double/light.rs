@@ -29,7 +29,16 @@ pub(super) fn sample(
     u: Vec2,
 ) -> Option<LightSample> {
     match light {
-        Light::Area(area) => sample_area(area, shapes, from, u_choice, u),
+        Light::Area(area) => {
+            let part = area.choose_part(u_choice)?;
+            let sample = sample_area(area, shapes, part, from, u)?;
+            // By area over all parts.
+            let share = f64::from(area.part_area(part)) / f64::from(area.area());
+            Some(LightSample {
+                pdf: share * sample.pdf,
+                ..sample
+            })
+        }
         Light::Sphere(sphere) => {
             let shape = shapes.sphere(sphere.primitive)?;
             sphere_light::sample(sphere, shape, from, u.as_dvec2())
@@ -59,18 +68,34 @@ pub(super) fn sample(
     }
 }
 
-/// The density of [`sample`] for the unit direction `wi` from `from`, which meets the surface of
-/// `light` at `point`, whose normal is `normal`, on a side that emits.
-pub(super) fn pdf(
+/// A direction from `from` to part `part` of `light`, with the numbers (inside the light, place).
+pub(super) fn sample_part(
     light: &Light,
     shapes: &Shapes,
+    part: usize,
+    from: DVec3,
+    (u_choice, u): (f32, Vec2),
+) -> Option<LightSample> {
+    match light {
+        Light::Area(area) => sample_area(area, shapes, part, from, u),
+        _ => sample(light, shapes, from, u_choice, u),
+    }
+}
+
+/// The density of [`sample_part`] for the direction from `from` that meets the surface of the part
+/// at `point`, whose normal is `normal`, on a side that emits.
+pub(super) fn pdf_part(
+    light: &Light,
+    shapes: &Shapes,
+    part: usize,
     from: DVec3,
     (point, normal): (DVec3, DVec3),
 ) -> f64 {
     match light {
         Light::Area(area) => {
             let to_light = point - from;
-            area_pdf(area, to_light.length(), normal.dot(to_light.normalize()))
+            let cos = normal.dot(to_light.normalize());
+            area_pdf(area, part, to_light.length(), cos)
         }
         Light::Sphere(sphere) => shapes
             .sphere(sphere.primitive)
@@ -98,12 +123,11 @@ pub(super) fn emitted(light: &Light, normal: DVec3, wi: DVec3) -> DVec3 {
 fn sample_area(
     area: &AreaLight,
     shapes: &Shapes,
+    part: usize,
     from: DVec3,
-    u_choice: f32,
     u: Vec2,
 ) -> Option<LightSample> {
     let u = u.as_dvec2();
-    let part = area.choose_part(u_choice)?;
     let (corner, edge_1, edge_2, (b1, b2)) = match area.shape() {
         AreaShape::Triangles { primitives } => {
             let [a, b, c] = shapes
@@ -124,7 +148,7 @@ fn sample_area(
     let normal = edge_1.cross(edge_2).normalize();
     let to_light = point - from;
     let wi = to_light.normalize();
-    let pdf = area_pdf(area, to_light.length(), normal.dot(wi));
+    let pdf = area_pdf(area, part, to_light.length(), normal.dot(wi));
     (pdf > 0.0).then(|| LightSample {
         wi,
         radiance: area.radiance().as_dvec3(),
@@ -135,7 +159,7 @@ fn sample_area(
 }
 
 /// 1 / A per area is r² / (A cos θ) per steradian; `cos_wi` is that of the direction to the light.
-fn area_pdf(area: &AreaLight, distance: f64, cos_wi: f64) -> f64 {
+fn area_pdf(area: &AreaLight, part: usize, distance: f64, cos_wi: f64) -> f64 {
     let cos = if area.is_two_sided() {
         cos_wi.abs()
     } else {
@@ -148,7 +172,7 @@ fn area_pdf(area: &AreaLight, distance: f64, cos_wi: f64) -> f64 {
         AreaDensity::Correct => distance * distance,
         AreaDensity::Course => distance,
     };
-    falloff / (f64::from(area.area()) * cos)
+    falloff / (f64::from(area.part_area(part)) * cos)
 }
 
 /// `irradiance` depends on the direction to the light and its squared distance.

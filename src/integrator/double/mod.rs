@@ -16,6 +16,7 @@ mod environment;
 mod error_function;
 mod frame;
 mod light;
+mod light_choice;
 mod microfacet;
 mod path;
 mod sphere_light;

@@ -7,7 +7,7 @@ use super::direct::direct_light;
 use super::frame::Frame;
 use super::surface::Surface;
 use super::trace::{Ray, closest};
-use super::{environment, light, warp};
+use super::{environment, light, light_choice, warp};
 use crate::bsdf::Bsdf;
 use crate::integrator::path::{MIN_SURVIVAL, TRAPPED_AFTER, TRAPPED_SURVIVAL};
 use crate::integrator::{PathId, PathTracer};
@@ -21,8 +21,13 @@ enum Previous {
     Blind,
     /// Not at all: the last vertex has sampled the lights.
     Counted,
-    /// By multiple importance: the last vertex lies at `from` and sent the ray with density `pdf`.
-    Shared { from: DVec3, pdf: f64 },
+    /// By multiple importance: the last vertex lies at `from`, is lit on the side of `normal`, and
+    /// sent the ray with density `pdf`.
+    Shared {
+        from: DVec3,
+        normal: DVec3,
+        pdf: f64,
+    },
 }
 
 /// A path on its way.
@@ -62,6 +67,11 @@ impl<'a> Vertex<'a> {
             wo: frame.to_local(wo),
             bsdf,
         }
+    }
+
+    /// The shading normal on the side from which light is reflected.
+    pub(super) fn lit_normal(&self) -> DVec3 {
+        self.frame.to_world(DVec3::Z) * 1.0_f64.copysign(self.wo.z)
     }
 
     /// `wi` in the frame; `None` where the normals disagree on its side (Veach 1997, section 5.3).
@@ -128,8 +138,8 @@ fn meet_environment(tracer: &PathTracer<'_>, path: &mut Path) {
     if let Light::Environment(sky) = scene.light(index) {
         let direction = path.ray.direction;
         let emitted = environment::radiance(sky, direction, path.bounce == 0);
-        add_emission(tracer, path, emitted, index, |_| {
-            environment::pdf(sky, direction)
+        add_emission(tracer, path, emitted, |_| {
+            f64::from(scene.light_sampler().group_pmf(index)) * environment::pdf(sky, direction)
         });
     }
 }
@@ -142,8 +152,12 @@ fn meet_light(tracer: &PathTracer<'_>, path: &mut Path, surface: &Surface) {
     let met = scene.light(index);
     let place = (surface.point, surface.geometric_normal);
     let emitted = light::emitted(met, place.1, path.ray.direction);
-    add_emission(tracer, path, emitted, index, |from| {
-        light::pdf(met, scene.shapes(), from, place)
+    let part = met.part_of(surface.primitive);
+    add_emission(tracer, path, emitted, |from| {
+        part.map_or(0.0, |part| {
+            light_choice::pmf(scene.light_sampler(), from, index, part)
+                * light::pdf_part(met, scene.shapes(), part, from.0, place)
+        })
     });
 }
 
@@ -151,8 +165,7 @@ fn add_emission(
     tracer: &PathTracer<'_>,
     path: &mut Path,
     emitted: DVec3,
-    light: u32,
-    pdf_from: impl FnOnce(DVec3) -> f64,
+    pdf_from: impl FnOnce((DVec3, DVec3)) -> f64,
 ) {
     if !tracer.counts_depth(path.bounce) {
         return;
@@ -160,10 +173,9 @@ fn add_emission(
     let weight = match path.previous {
         Previous::Blind => 1.0,
         Previous::Counted => 0.0,
-        Previous::Shared { from, pdf } => {
+        Previous::Shared { from, normal, pdf } => {
             let n = f64::from(tracer.settings.light_samples);
-            let light_pdf = n * f64::from(tracer.scene.light_pmf(light)) * pdf_from(from);
-            warp::power_heuristic(pdf, light_pdf)
+            warp::power_heuristic(pdf, n * pdf_from((from, normal)))
         }
     };
     path.radiance += path.throughput * emitted * weight;
@@ -184,8 +196,11 @@ fn scatter(tracer: &PathTracer<'_>, path: &mut Path, vertex: &Vertex<'_>) -> boo
         }
         Scattered::Smooth { wi, value, pdf } => {
             path.previous = if tracer.shares_emission() {
-                let from = vertex.surface.point;
-                Previous::Shared { from, pdf }
+                Previous::Shared {
+                    from: vertex.surface.point,
+                    normal: vertex.lit_normal(),
+                    pdf,
+                }
             } else {
                 Previous::Counted
             };

@@ -48,14 +48,25 @@ fn degenerate_placements_give_usable_samples_or_none() {
         }
     }
     assert_eq!(area(flat, true).power(&shapes, 1.0), 0.0);
-    let broken = [Rgb::ZERO, Rgb::splat(f32::NAN)].map(|radiance| {
-        Light::Area(AreaLight::new(&shapes, square(), radiance, false)).power(&shapes, 1.0)
-    });
-    let sampler = LightSampler::new(&[broken[0], 1.0, broken[1], 3.0]);
+    let rectangle = |radiance| Light::Area(AreaLight::new(&shapes, square(), radiance, false));
+    let broken = [Rgb::ZERO, Rgb::splat(f32::NAN)].map(rectangle);
+    let bright = |r: f32| rectangle(Rgb::splat(r));
+    let lights = [
+        broken[0].clone(),
+        bright(1.0),
+        broken[1].clone(),
+        bright(3.0),
+    ];
+    let sampler = LightSampler::new(&lights, &shapes, 1.0);
+    let place = (Vec3::ZERO, Vec3::Y);
     for i in 0..1000 {
-        let (index, pmf) = sampler.sample(i as f32 / 1000.0);
-        assert_eq!((index, pmf), if i < 250 { (1, 0.25) } else { (3, 0.75) });
+        let u = (i as f32 + 0.5) / 1000.0;
+        let choice = sampler.sample(place.0, place.1, u).expect("two shine");
+        let expected = if i < 250 { (1, 0.25) } else { (3, 0.75) };
+        assert_eq!((choice.light, choice.pmf), expected);
     }
-    assert_eq!(LightSampler::new(&broken).sample(0.5), (0, 0.0));
-    assert_eq!(sampler.pmf(0) + sampler.pmf(7), 0.0);
+    let none = LightSampler::new(&broken, &shapes, 1.0);
+    assert!(none.is_empty() && none.sample(place.0, place.1, 0.5).is_none());
+    let pmf = |light| sampler.pmf(place.0, place.1, light, 0);
+    assert_eq!(pmf(0) + pmf(2) + pmf(7), 0.0);
 }

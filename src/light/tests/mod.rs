@@ -4,6 +4,7 @@ mod area;
 mod degenerate;
 mod environment;
 mod points;
+mod sampler;
 mod sphere;
 
 use glam::{Vec2, Vec3};

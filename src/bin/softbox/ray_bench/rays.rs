@@ -146,8 +146,8 @@ fn bounce(subject: &Subject, set: &RaySet, seed: u64) -> Vec<Ray> {
 fn shadow(subject: &Subject, set: &RaySet, seed: u64) -> Vec<Ray> {
     let mut random = Random::new(seed);
     places(subject, set)
-        .filter_map(|(point, _)| {
-            let (direction, distance) = subject.lamp.sample(point, &mut random)?;
+        .filter_map(|place @ (point, _)| {
+            let (direction, distance) = subject.lamp.sample(place, &mut random)?;
             Some(Ray::segment(point, direction, distance * SHADOW_END))
         })
         .collect()

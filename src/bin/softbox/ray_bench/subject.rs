@@ -39,14 +39,18 @@ pub(crate) struct Subject {
 pub(crate) enum Lamp {
     /// Points of a parallelogram: a corner and two edges.
     Quad([Vec3; 3]),
-    /// The lights of a scene, by power.
+    /// The lights of a scene, as a render chooses them.
     Scene(Box<PreparedScene>),
 }
 
 impl Lamp {
-    /// Unit direction and distance (may be infinite) of a random point of the lamp seen from `from`;
-    /// `None` where it does not shine.
-    pub(crate) fn sample(&self, from: Vec3, random: &mut Random) -> Option<(Vec3, f32)> {
+    /// Unit direction and distance (may be infinite) of a random point of the lamp seen from a
+    /// surface of the given point and normal; `None` where it does not shine.
+    pub(crate) fn sample(
+        &self,
+        (from, normal): (Vec3, Vec3),
+        random: &mut Random,
+    ) -> Option<(Vec3, f32)> {
         let [choice, part, u, v] = [0; 4].map(|_| random.unit());
         match self {
             Self::Quad([corner, edge_u, edge_v]) => {
@@ -54,9 +58,14 @@ impl Lamp {
                 Some((segment.normalize(), segment.length()))
             }
             Self::Scene(scene) => {
-                let (light, _) = scene.choose_light(choice)?;
-                let light = scene.light(light);
-                let sample = light.sample(scene.shapes(), from, part, Vec2::new(u, v))?;
+                let chosen = scene.light_sampler().sample(from, normal, choice)?;
+                let numbers = (part, Vec2::new(u, v));
+                let sample = scene.light(chosen.light).sample_part(
+                    scene.shapes(),
+                    chosen.part as usize,
+                    from,
+                    numbers,
+                )?;
                 Some((sample.wi, sample.distance))
             }
         }

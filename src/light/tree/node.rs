@@ -1,0 +1,220 @@
+use glam::Vec3;
+
+use super::super::bounds::EmissionBounds;
+
+/// Children of a node.
+pub(super) const WIDTH: usize = 8;
+/// Children whose importance is computed at once.
+const LANES: usize = 4;
+/// In a link: the child is a part, not a node.
+const PART: u32 = 1 << 31;
+/// In a link: the child shines against its axis too.
+const TWO_SIDED: u32 = 1 << 30;
+/// Steps of the stored cosines and axes to 1.
+const COSINE_STEPS: f32 = 127.0;
+const AXIS_STEPS: f32 = 32767.0;
+/// Intensities are relative to the brightest part; dimmer ones count as this.
+pub(super) const LEAST_INTENSITY: f32 = 1e-20;
+
+/// Up to [`WIDTH`] children side by side, 32 bytes each. Empty places have intensity 0.
+#[derive(Clone, Debug, PartialEq)]
+#[repr(C, align(64))]
+pub(super) struct Node {
+    x: [f32; WIDTH],
+    y: [f32; WIDTH],
+    z: [f32; WIDTH],
+    radius: [f32; WIDTH],
+    intensity: [f32; WIDTH],
+    link: [u32; WIDTH],
+    axis: [[i16; WIDTH]; 3],
+    cos_normals: [i8; WIDTH],
+    cos_emission: [i8; WIDTH],
+}
+
+/// What lies behind a child.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Link {
+    /// Node number.
+    Node(usize),
+    /// Part number, counted over all lights.
+    Part(usize),
+}
+
+/// A child of a node of the light tree, as it is stored.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightCluster {
+    /// Middle of a sphere around it.
+    pub center: Vec3,
+    /// Radius of the sphere.
+    pub radius: f32,
+    /// The axis of its normals, a unit vector up to 10⁻⁴.
+    pub axis: Vec3,
+    /// Cosine of the largest angle of a normal to the axis.
+    pub cos_normals: f32,
+    /// Cosine of the largest angle of emission to a normal.
+    pub cos_emission: f32,
+    /// It shines against the axis too.
+    pub two_sided: bool,
+    /// Luminance of the intensity, relative to the brightest part of all.
+    pub intensity: f32,
+    /// What it is.
+    pub link: Link,
+}
+
+impl LightCluster {
+    /// Square of the shortest distance that counts, in scene units: scenes are of unit size.
+    pub const LEAST_DISTANCE2: f32 = 1e-12;
+    /// Points up to this many squared radii away count as inside the sphere, so that rounding does
+    /// not matter on it.
+    pub const INSIDE: f32 = 1.001;
+    /// Emission this close to the edge of its cone is never left out: axes and cosines are rounded.
+    pub const EDGE: f32 = 1e-4;
+}
+
+impl Node {
+    pub(super) const EMPTY: Self = Self {
+        x: [0.0; WIDTH],
+        y: [0.0; WIDTH],
+        z: [0.0; WIDTH],
+        radius: [0.0; WIDTH],
+        intensity: [0.0; WIDTH],
+        link: [0; WIDTH],
+        axis: [[0; WIDTH]; 3],
+        cos_normals: [0; WIDTH],
+        cos_emission: [0; WIDTH],
+    };
+
+    /// Puts `bounds` at place `i`; its intensity becomes relative to `brightest`. Cosines are
+    /// rounded down, so that nothing is left out.
+    pub(super) fn set(&mut self, i: usize, bounds: &EmissionBounds, brightest: f64, link: Link) {
+        let cosine = |cos: f32| (cos.clamp(-1.0, 1.0) * COSINE_STEPS).floor() as i8;
+        [self.x[i], self.y[i], self.z[i]] = bounds.center.to_array();
+        self.radius[i] = bounds.radius;
+        let relative = (f64::from(bounds.intensity) / brightest) as f32;
+        self.intensity[i] = relative.max(LEAST_INTENSITY);
+        for (axis, component) in self.axis.iter_mut().zip(bounds.axis.to_array()) {
+            axis[i] = (component * AXIS_STEPS).round() as i16;
+        }
+        self.cos_normals[i] = cosine(bounds.cos_normals);
+        self.cos_emission[i] = cosine(bounds.cos_emission);
+        let side = if bounds.two_sided { TWO_SIDED } else { 0 };
+        self.link[i] = side
+            | match link {
+                Link::Node(node) => node as u32,
+                Link::Part(part) => PART | part as u32,
+            };
+    }
+
+    pub(super) fn link(&self, i: usize) -> Link {
+        let index = (self.link[i] & !(PART | TWO_SIDED)) as usize;
+        if self.link[i] & PART == 0 {
+            Link::Node(index)
+        } else {
+            Link::Part(index)
+        }
+    }
+
+    /// Child `i`; `None` when there is none.
+    pub(super) fn cluster(&self, i: usize) -> Option<LightCluster> {
+        (self.intensity[i] > 0.0).then(|| LightCluster {
+            center: Vec3::new(self.x[i], self.y[i], self.z[i]),
+            radius: self.radius[i],
+            axis: Vec3::from_array([0, 1, 2].map(|k| axis(self.axis[k][i]))),
+            cos_normals: cosine(self.cos_normals[i]),
+            cos_emission: cosine(self.cos_emission[i]),
+            two_sided: self.link[i] & TWO_SIDED != 0,
+            intensity: self.intensity[i],
+            link: self.link(i),
+        })
+    }
+
+    /// About the irradiance that each child could give at `point` on the side of the unit `normal`
+    /// if nothing is in the way, in arbitrary units; 0 only where it gives none.
+    ///
+    /// Conty Estevez and Kulla 2018, "Importance Sampling of Many Lights with Adaptive Tree
+    /// Splitting", section 4.2, with the cosine at the surface bounded in the same way: angles are
+    /// made smaller by what the sphere around the child subtends.
+    pub(super) fn importance(&self, point: Vec3, normal: Vec3) -> [f32; WIDTH] {
+        let mut all = [0.0; WIDTH];
+        for start in (0..WIDTH).step_by(LANES) {
+            for lane in 0..LANES {
+                let i = start + lane;
+                all[i] = self.importance_of(i, point, normal);
+            }
+        }
+        all
+    }
+
+    #[inline(always)]
+    fn importance_of(&self, i: usize, point: Vec3, normal: Vec3) -> f32 {
+        let (x, y, z) = (
+            self.x[i] - point.x,
+            self.y[i] - point.y,
+            self.z[i] - point.z,
+        );
+        let d2 = (x * x + y * y + z * z).max(LightCluster::LEAST_DISTANCE2);
+        let inverse = 1.0 / d2.sqrt();
+        let r2 = self.radius[i] * self.radius[i];
+        let is_inside = d2 <= r2 * LightCluster::INSIDE;
+        // The half angle that the sphere subtends.
+        let sin_b = self.radius[i] * inverse;
+        let cos_b = (1.0 - sin_b * sin_b).max(0.0).sqrt();
+        let along_axis =
+            x * axis(self.axis[0][i]) + y * axis(self.axis[1][i]) + z * axis(self.axis[2][i]);
+        let cos_w = -along_axis * inverse;
+        let cos_w = if self.link[i] & TWO_SIDED == 0 {
+            cos_w
+        } else {
+            cos_w.abs()
+        };
+        let sin_w = sine(cos_w);
+        let cos_o = cosine(self.cos_normals[i]);
+        let sin_o = sine(cos_o);
+        let in_cone = cos_w >= cos_o;
+        let cos_x = if in_cone {
+            1.0
+        } else {
+            cos_w * cos_o + sin_w * sin_o
+        };
+        let sin_x = if in_cone {
+            0.0
+        } else {
+            sin_w * cos_o - cos_w * sin_o
+        };
+        let at_light = if cos_x >= cos_b {
+            1.0
+        } else {
+            cos_x * cos_b + sin_x * sin_b
+        };
+        let cos_i = (x * normal.x + y * normal.y + z * normal.z) * inverse;
+        let at_surface = if cos_i >= cos_b {
+            1.0
+        } else {
+            cos_i * cos_b + sine(cos_i) * sin_b
+        };
+        let (at_light, at_surface) = if is_inside {
+            (1.0, 1.0)
+        } else {
+            (at_light, at_surface.max(0.0))
+        };
+        let is_emitting = at_light > cosine(self.cos_emission[i]) - LightCluster::EDGE;
+        let at_light = if is_emitting {
+            at_light.max(LightCluster::EDGE)
+        } else {
+            0.0
+        };
+        self.intensity[i] * at_light * at_surface / d2.max(r2)
+    }
+}
+
+fn axis(stored: i16) -> f32 {
+    f32::from(stored) * (1.0 / AXIS_STEPS)
+}
+
+fn cosine(stored: i8) -> f32 {
+    f32::from(stored) * (1.0 / COSINE_STEPS)
+}
+
+fn sine(cosine: f32) -> f32 {
+    (1.0 - cosine * cosine).max(0.0).sqrt()
+}
