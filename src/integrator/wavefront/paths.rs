@@ -6,7 +6,7 @@ use crate::math::Ray;
 use crate::sampling::PathSampler;
 
 /// Paths on their way, all after the same number of bounces: the ray that each is to take next, and
-/// what it carries. 32 bytes each, so that eight of one kind are a square of numbers.
+/// what it carries.
 #[derive(Debug, Default)]
 pub(super) struct Paths {
     pub(super) rays: Vec<Ray>,
@@ -15,13 +15,14 @@ pub(super) struct Paths {
 
 /// What a path carries.
 #[derive(Clone, Copy, Debug)]
-#[repr(C, align(32))]
 pub(super) struct PathState {
     pub(super) throughput: Rgb,
     /// Number of the path in its batch.
     pub(super) id: u32,
     /// Where the ray left, for [`EmissionWeight::Shared`].
     pub(super) from: Vec3,
+    /// The side on which it did, likewise.
+    pub(super) normal: Vec3,
     /// The density that [`EmissionWeight::Shared`] has, or [`FULL`] or [`NONE`].
     pub(super) scatter_pdf: f32,
 }
@@ -47,16 +48,21 @@ impl Paths {
 
     /// Adds `path`, number `id` of the batch.
     pub(super) fn push(&mut self, id: u32, path: &Path) {
-        let (from, scatter_pdf) = match path.emission_weight {
-            EmissionWeight::Full => (Vec3::ZERO, FULL),
-            EmissionWeight::None => (Vec3::ZERO, NONE),
-            EmissionWeight::Shared { from, scatter_pdf } => (from, scatter_pdf),
+        let (from, normal, scatter_pdf) = match path.emission_weight {
+            EmissionWeight::Full => (Vec3::ZERO, Vec3::ZERO, FULL),
+            EmissionWeight::None => (Vec3::ZERO, Vec3::ZERO, NONE),
+            EmissionWeight::Shared {
+                from,
+                normal,
+                scatter_pdf,
+            } => (from, normal, scatter_pdf),
         };
         self.rays.push(path.ray);
         self.states.push(PathState {
             throughput: path.throughput,
             id,
             from,
+            normal,
             scatter_pdf,
         });
     }
@@ -77,6 +83,7 @@ impl Paths {
         } else {
             EmissionWeight::Shared {
                 from: state.from,
+                normal: state.normal,
                 scatter_pdf: state.scatter_pdf,
             }
         };

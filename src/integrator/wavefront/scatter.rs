@@ -54,13 +54,19 @@ impl Shade<'_, '_> {
             direction,
         );
         let bits = L::bits(alive) & group.lanes;
-        let from = if shares_emission {
-            group.surface.point
+        let nowhere = Vec3Lanes::splat(Vec3::ZERO);
+        let (from, side) = if shares_emission {
+            (group.surface.point, group.lit_normal())
         } else {
-            Vec3Lanes::splat(Vec3::ZERO)
+            (nowhere, nowhere)
         };
         let pdf = if shares_emission { pdf } else { L::splat(NONE) };
-        self.go_on(group, bits, [origin, direction, throughput, from], pdf);
+        self.go_on(
+            group,
+            bits,
+            [origin, direction, throughput, from, side],
+            pdf,
+        );
     }
 
     #[inline(always)]
@@ -68,11 +74,12 @@ impl Shade<'_, '_> {
         &mut self,
         group: &Group<L>,
         lanes: u32,
-        [origin, direction, throughput, from]: [Vec3Lanes<L>; 4],
+        [origin, direction, throughput, from, side]: [Vec3Lanes<L>; 5],
         pdf: L,
     ) {
         let (origin, direction) = (origin.store(), direction.store());
-        let (throughput, from, pdf) = (throughput.store(), from.store(), pdf.to_array());
+        let (throughput, pdf) = (throughput.store(), pdf.to_array());
+        let (from, side) = (from.store(), side.store());
         for lane in (0..LANES).filter(|lane| lanes >> lane & 1 == 1) {
             let ray = Ray::new(origin.get(lane), direction.get(lane));
             self.next.rays.push(ray);
@@ -80,6 +87,7 @@ impl Shade<'_, '_> {
                 throughput: throughput.get(lane),
                 id: self.paths.states[group.first + lane].id,
                 from: from.get(lane),
+                normal: side.get(lane),
                 scatter_pdf: pdf[lane],
             });
         }

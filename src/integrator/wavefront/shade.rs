@@ -38,6 +38,15 @@ pub(super) struct Group<L: Lanes> {
     pub(super) throughput: Vec3Lanes<L>,
 }
 
+impl<L: Lanes> Group<L> {
+    /// As [`Vertex::lit_normal`].
+    #[inline(always)]
+    pub(super) fn lit_normal(&self) -> Vec3Lanes<L> {
+        let normal = self.surface.shading_normal;
+        Vec3Lanes::select(self.wo_z.lt(L::splat(0.0)), normal.neg(), normal)
+    }
+}
+
 impl LaneKernel for Shade<'_, '_> {
     type Answer = ();
 

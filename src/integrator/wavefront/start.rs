@@ -36,6 +36,7 @@ impl LaneKernel for Start<'_, '_> {
                     throughput: Rgb::ONE,
                     id: (group * LANES + lane) as u32,
                     from: Vec3::ZERO,
+                    normal: Vec3::ZERO,
                     scatter_pdf: FULL,
                 });
             }
