@@ -1,6 +1,6 @@
 //! Direct light at a vertex: which samples are taken, and the rays they ask for.
 
-use glam::Vec2;
+use glam::{Vec2, Vec3};
 
 use super::path::{Path, Vertex};
 use super::{PathSettings, PathTracer};
@@ -86,6 +86,11 @@ impl DirectPlan {
         self.samples.len()
     }
 
+    /// True when some samples are directions of the hemisphere.
+    pub(super) fn samples_hemisphere(&self) -> bool {
+        matches!(self.samples.first(), Some(DirectSample::Hemisphere { .. }))
+    }
+
     /// True when a vertex takes none.
     pub fn is_empty(&self) -> bool {
         self.samples.is_empty()
@@ -121,24 +126,11 @@ impl PathTracer<'_> {
         number: u32,
     ) -> Option<DirectRay> {
         match self.plan.samples[number as usize] {
-            DirectSample::Light { light, weight } => {
-                let (u_part, u) = light_numbers(path.sampler, path.bounce, number);
-                let from = vertex.surface.point;
-                let sample =
-                    (self.scene.light(light)).sample(self.scene.shapes(), from, u_part, u)?;
+            DirectSample::Light { .. } | DirectSample::AnyLight { .. } => {
+                let from = (vertex.surface.point, vertex.lit_normal());
+                let (sample, weight) =
+                    self.light_sample((path.sampler, path.bounce), from, number)?;
                 self.shadow_ray(path, vertex, &sample, weight)
-            }
-            DirectSample::AnyLight { weight } => {
-                let u = path.sampler.get_1d(path.bounce, Slot::LightChoice(number));
-                let from = vertex.surface.point;
-                let choice = (self.scene.light_sampler()).sample(from, vertex.lit_normal(), u)?;
-                let numbers = light_numbers(path.sampler, path.bounce, number);
-                let (light, part) = (self.scene.light(choice.light), choice.part as usize);
-                let sample = light.sample_part(self.scene.shapes(), part, from, numbers)?;
-                let pdf = choice.pmf * sample.pdf;
-                (pdf > 0.0)
-                    .then(|| LightSample { pdf, ..sample })
-                    .and_then(|sample| self.shadow_ray(path, vertex, &sample, weight))
             }
             DirectSample::Hemisphere { weight } => {
                 let mut local =
@@ -154,6 +146,34 @@ impl PathTracer<'_> {
                     ray: Ray::new(vertex.origin(wi), wi),
                     factor,
                 })
+            }
+        }
+    }
+
+    /// Light sample `number` of the plan for a surface at a point, lit on the side of a normal, and
+    /// its weight; its density counts the choice of its light. `None` for a sample of the hemisphere
+    /// and where the light sends nothing.
+    pub(super) fn light_sample(
+        &self,
+        (sampler, bounce): (PathSampler, u32),
+        (from, normal): (Vec3, Vec3),
+        number: u32,
+    ) -> Option<(LightSample, f32)> {
+        let shapes = self.scene.shapes();
+        let numbers = light_numbers(sampler, bounce, number);
+        match self.plan.samples[number as usize] {
+            DirectSample::Hemisphere { .. } => None,
+            DirectSample::Light { light, weight } => {
+                let light = self.scene.light(light);
+                Some((light.sample(shapes, from, numbers.0, numbers.1)?, weight))
+            }
+            DirectSample::AnyLight { weight } => {
+                let u = sampler.get_1d(bounce, Slot::LightChoice(number));
+                let choice = self.scene.light_sampler().sample(from, normal, u)?;
+                let (light, part) = (self.scene.light(choice.light), choice.part as usize);
+                let sample = light.sample_part(shapes, part, from, numbers)?;
+                let pdf = choice.pmf * sample.pdf;
+                (pdf > 0.0).then_some((LightSample { pdf, ..sample }, weight))
             }
         }
     }

@@ -1,9 +1,10 @@
 //! The production path tracer: a batch of paths goes through each stage together.
 //!
 //! All paths of a batch have bounced equally often. The plain surfaces among those that they meet,
-//! which are nearly all, are shaded eight at a time (`shade`, `surface`, `scatter`); the others by the
+//! which are nearly all, are shaded eight at a time (`shade`, `surface`, `direct`, `scatter`); the others by the
 //! steps of the reference, one after the other. Either way the bits are those of the reference.
 
+mod direct;
 mod paths;
 mod queue;
 mod scatter;

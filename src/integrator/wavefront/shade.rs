@@ -2,13 +2,12 @@ use std::ops::Range;
 
 use super::paths::Paths;
 use super::queue::DirectQueues;
-use super::surface::{Found, SurfaceLanes};
+use super::surface::{Found, SurfaceArrays, SurfaceLanes};
 use super::{Path, PathCounts, PathTracer, Vertex};
 use crate::color::Rgb;
 use crate::geometry::Hit;
 use crate::math::{Frame, FrameLanes, LANES, LaneKernel, Lanes, Vec3Array, Vec3Lanes};
 use crate::sampling::PathSampler;
-use crate::scene::SurfaceInteraction;
 
 /// One bounce of a range of paths: emission is added to their radiance, rays of direct light to the
 /// queues, and the paths that go on to `next`.
@@ -131,24 +130,13 @@ impl<'s> Shade<'_, 's> {
         }
     }
 
-    #[inline(always)]
-    fn direct_light<L: Lanes>(&mut self, group: &Group<L>) {
-        if !self.tracer.counts_depth(self.bounce + 1) {
-            return;
-        }
-        let surface = &group.surface;
-        let surfaces = SurfaceArrays {
-            point: surface.point.store(),
-            departure: surface.departure.store(),
-            error: surface.error.store(),
-            geometric_normal: surface.geometric_normal.store(),
-            shading_normal: surface.shading_normal.store(),
-        };
-        self.direct_light_one_by_one(group.first, group.lanes, &surfaces);
-    }
-
     /// Direct light of the `lanes` of a group whose lights are not sampled in lanes.
-    fn direct_light_one_by_one(&mut self, first: usize, lanes: u32, surfaces: &SurfaceArrays) {
+    pub(super) fn direct_light_one_by_one(
+        &mut self,
+        first: usize,
+        lanes: u32,
+        surfaces: &SurfaceArrays,
+    ) {
         for lane in (0..LANES).filter(|lane| lanes >> lane & 1 == 1) {
             let index = first + lane;
             let path = self.path(index);
@@ -165,29 +153,6 @@ impl<'s> Shade<'_, 's> {
             for number in 0..self.tracer.plan.len() as u32 {
                 self.direct_ray(id, &path, &vertex, number);
             }
-        }
-    }
-}
-
-/// Eight surfaces in memory.
-#[derive(Debug)]
-struct SurfaceArrays {
-    point: Vec3Array,
-    departure: Vec3Array,
-    error: Vec3Array,
-    geometric_normal: Vec3Array,
-    shading_normal: Vec3Array,
-}
-
-impl SurfaceArrays {
-    fn get(&self, lane: usize, primitive: u32) -> SurfaceInteraction {
-        SurfaceInteraction {
-            point: self.point.get(lane),
-            departure: self.departure.get(lane),
-            error: self.error.get(lane),
-            geometric_normal: self.geometric_normal.get(lane),
-            shading_normal: self.shading_normal.get(lane),
-            primitive,
         }
     }
 }

@@ -2,7 +2,7 @@ use glam::Vec3;
 
 use crate::geometry::{Hit, is_clear_of_edges, triangle_departure};
 use crate::math::{DoubleLanes, LANES, Lanes, Ray, Vec3Array, Vec3Lanes, gamma};
-use crate::scene::PreparedScene;
+use crate::scene::{PreparedScene, SurfaceInteraction};
 
 /// Up to eight plain surface points, each with the bits of [`PreparedScene::interaction`].
 #[derive(Clone, Copy, Debug)]
@@ -13,6 +13,20 @@ pub(super) struct SurfaceLanes<L> {
     pub(super) geometric_normal: Vec3Lanes<L>,
     pub(super) shading_normal: Vec3Lanes<L>,
     pub(super) reflectance: Vec3Lanes<L>,
+}
+
+impl<L: Lanes> SurfaceLanes<L> {
+    /// To memory.
+    #[inline(always)]
+    pub(super) fn store(&self) -> SurfaceArrays {
+        SurfaceArrays {
+            point: self.point.store(),
+            departure: self.departure.store(),
+            error: self.error.store(),
+            geometric_normal: self.geometric_normal.store(),
+            shading_normal: self.shading_normal.store(),
+        }
+    }
 }
 
 /// What single steps have looked up for eight hits.
@@ -178,5 +192,28 @@ impl Found {
         surface.error = Vec3Lanes::select(is_sphere, error, surface.error);
         surface.geometric_normal = Vec3Lanes::select(is_sphere, normal, surface.geometric_normal);
         surface.shading_normal = surface.geometric_normal;
+    }
+}
+
+/// Eight surfaces in memory.
+#[derive(Debug)]
+pub(super) struct SurfaceArrays {
+    point: Vec3Array,
+    departure: Vec3Array,
+    error: Vec3Array,
+    geometric_normal: Vec3Array,
+    shading_normal: Vec3Array,
+}
+
+impl SurfaceArrays {
+    pub(super) fn get(&self, lane: usize, primitive: u32) -> SurfaceInteraction {
+        SurfaceInteraction {
+            point: self.point.get(lane),
+            departure: self.departure.get(lane),
+            error: self.error.get(lane),
+            geometric_normal: self.geometric_normal.get(lane),
+            shading_normal: self.shading_normal.get(lane),
+            primitive,
+        }
     }
 }

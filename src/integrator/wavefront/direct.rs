@@ -1,0 +1,168 @@
+use std::f32::consts::FRAC_1_PI;
+
+use glam::Vec3;
+
+use super::shade::{Group, Shade};
+use crate::light::LightSample;
+use crate::math::{
+    LANES, Lanes, Ray, SHADOW_T_MAX, Vec3Array, Vec3Lanes, gamma, offset_origin_lanes,
+};
+
+/// A light sample for each of eight vertices.
+#[derive(Debug)]
+pub(super) struct LightSamples {
+    /// A bit for each lane that has one.
+    lanes: u32,
+    /// Of those the ones from infinity.
+    infinite: u32,
+    /// Those that no scattered ray finds.
+    delta: u32,
+    wi: Vec3Array,
+    radiance: Vec3Array,
+    point: Vec3Array,
+    normal: Vec3Array,
+    pdf: [f32; LANES],
+    /// Weight over density.
+    factor: [f32; LANES],
+}
+
+impl LightSamples {
+    const NONE: Self = Self {
+        lanes: 0,
+        infinite: 0,
+        delta: 0,
+        wi: Vec3Array::ZERO,
+        radiance: Vec3Array::ZERO,
+        point: Vec3Array::ZERO,
+        normal: Vec3Array::ZERO,
+        pdf: [1.0; LANES],
+        factor: [0.0; LANES],
+    };
+
+    #[inline(always)]
+    fn set(&mut self, lane: usize, sample: &LightSample, weight: f32) {
+        let bit = 1 << lane;
+        self.lanes |= bit;
+        if !sample.distance.is_finite() {
+            self.infinite |= bit;
+        }
+        if sample.is_delta {
+            self.delta |= bit;
+        }
+        self.wi.set(lane, sample.wi);
+        self.radiance.set(lane, sample.radiance);
+        self.point.set(lane, sample.point);
+        self.normal.set(lane, sample.normal);
+        self.pdf[lane] = sample.pdf;
+        self.factor[lane] = weight / sample.pdf;
+    }
+}
+
+impl Shade<'_, '_> {
+    /// Queues the rays of direct light of a group.
+    #[inline(always)]
+    pub(super) fn direct_light<L: Lanes>(&mut self, group: &Group<L>) {
+        if !self.tracer.counts_depth(self.bounce + 1) {
+            return;
+        }
+        if self.tracer.plan.samples_hemisphere() {
+            return self.direct_light_one_by_one(group.first, group.lanes, &group.surface.store());
+        }
+        for number in 0..self.tracer.plan.len() as u32 {
+            let (point, normal) = (group.surface.point.store(), group.lit_normal().store());
+            let samples = self.light_samples(group.first, group.lanes, (&point, &normal), number);
+            let made = if samples.lanes == 0 {
+                0
+            } else {
+                self.shadow_rays(group, &samples)
+            };
+            self.counts.culled_shadow_rays += u64::from(group.lanes.count_ones() - made);
+        }
+    }
+
+    fn light_samples(
+        &self,
+        first: usize,
+        lanes: u32,
+        (points, normals): (&Vec3Array, &Vec3Array),
+        number: u32,
+    ) -> LightSamples {
+        let mut samples = LightSamples::NONE;
+        for lane in (0..LANES).filter(|lane| lanes >> lane & 1 == 1) {
+            let id = self.paths.states[first + lane].id as usize;
+            let from = (points.get(lane), normals.get(lane));
+            let numbers = (self.samplers[id], self.bounce);
+            if let Some((sample, weight)) = self.tracer.light_sample(numbers, from, number) {
+                samples.set(lane, &sample, weight);
+            }
+        }
+        samples
+    }
+
+    /// Queues shadow rays as [`super::PathTracer::shadow_ray`] makes them; returns their number.
+    #[inline(always)]
+    fn shadow_rays<L: Lanes>(&mut self, group: &Group<L>, samples: &LightSamples) -> u32 {
+        let surface = &group.surface;
+        let zero = L::splat(0.0);
+        let wi = Vec3Lanes::<L>::load(&samples.wi);
+        let z = surface.shading_normal.dot(wi);
+        let normal = surface.geometric_normal;
+        let is_same_side = (group.wo_z.gt(zero) & z.gt(zero)) | (group.wo_z.lt(zero) & z.lt(zero));
+        let bits = L::bits((z * wi.dot(normal)).gt(zero) & is_same_side) & samples.lanes;
+        if bits == 0 {
+            return 0;
+        }
+        let scattered = (surface.reflectance.scale(L::splat(FRAC_1_PI))).scale(z.abs());
+        let mut contribution = (group.throughput * scattered * Vec3Lanes::load(&samples.radiance))
+            .scale(L::load(&samples.factor));
+        let black = contribution.x.eq(zero) & contribution.y.eq(zero) & contribution.z.eq(zero);
+        let bits = bits & !L::bits(black);
+        if self.tracer.shares_emission() {
+            let n = L::splat(self.tracer.settings.light_samples as f32);
+            let share = power_heuristic(n * L::load(&samples.pdf), z.abs() * L::splat(FRAC_1_PI));
+            let shared = contribution.scale(share);
+            let is_delta = L::mask_of_bits(samples.delta);
+            contribution = Vec3Lanes::select(is_delta, contribution, shared);
+        }
+        let origin = offset_origin_lanes(surface.departure, surface.error, normal, wi);
+        let point = Vec3Lanes::load(&samples.point);
+        let error = point.abs().scale(L::splat(gamma(8)));
+        let target = offset_origin_lanes(point, error, Vec3Lanes::load(&samples.normal), wi.neg());
+        let segment = target - origin;
+        let direction = Vec3Lanes::select(L::mask_of_bits(samples.infinite), wi, segment);
+        self.queue(
+            group.first,
+            bits,
+            samples.infinite,
+            [&origin.store(), &direction.store(), &contribution.store()],
+        );
+        bits.count_ones()
+    }
+
+    #[inline(always)]
+    fn queue(
+        &mut self,
+        first: usize,
+        lanes: u32,
+        infinite: u32,
+        [origins, directions, contributions]: [&Vec3Array; 3],
+    ) {
+        for lane in (0..LANES).filter(|lane| lanes >> lane & 1 == 1) {
+            let (origin, direction): (Vec3, Vec3) = (origins.get(lane), directions.get(lane));
+            let ray = if infinite >> lane & 1 == 1 {
+                Ray::new(origin, direction)
+            } else {
+                Ray::segment(origin, direction, SHADOW_T_MAX)
+            };
+            let owner = self.paths.states[first + lane].id;
+            self.direct.push_shadow(owner, ray, contributions.get(lane));
+        }
+    }
+}
+
+/// As [`crate::sampling::power_heuristic`] for a finite `pdf_a` above 0.
+#[inline(always)]
+fn power_heuristic<L: Lanes>(pdf_a: L, pdf_b: L) -> L {
+    let ratio = pdf_b / pdf_a;
+    L::splat(1.0) / (L::splat(1.0) + ratio * ratio)
+}
