@@ -62,7 +62,7 @@
 //! | to add | touch |
 //! |---|---|
 //! | a material | `bsdf/`: its file and variant; `scene::Surface`; `io` reads it; a chi-square case |
-//! | a light | `light/`: its file and variant; `scene::LightKind`; a chi-square case |
+//! | a light | `light/`: its file, variant and bounds for the tree; `scene::LightKind`; a chi-square case |
 //! | a setting | [`settings`]; a flag in the program's `args`, a row in a panel |
 //! | a file format | `io/`: a file, and a line where the extension is looked up |
 //! | a faster traversal | `bvh/`, `geometry/aggregate.rs`; callers see the batch interface |

@@ -76,7 +76,8 @@ fn shares(tree: &LightTree, node: usize, point: DVec3, normal: DVec3) -> Option<
     (total > 0.0).then(|| children.into_iter().map(share).collect())
 }
 
-/// Conty Estevez and Kulla 2018, section 4.2: intensity · cos θ′ · cos θᵢ′ / d².
+/// Intensity · cos θ′ · cos θᵢ′ / d² (Conty Estevez and Kulla 2018, section 4.2), each cosine mixed
+/// from its bound and that of the middle.
 fn importance(cluster: &LightCluster, point: DVec3, normal: DVec3) -> f64 {
     let to_light = cluster.center.as_dvec3() - point;
     let radius2 = f64::from(cluster.radius).powi(2);
@@ -97,13 +98,17 @@ fn importance(cluster: &LightCluster, point: DVec3, normal: DVec3) -> f64 {
         angle(along_axis)
     };
     let normals = angle(f64::from(cluster.cos_normals));
-    let at_light = (from_axis - normals - subtended).max(0.0).cos();
-    let at_surface = (angle(normal.dot(to_light) / distance) - subtended)
-        .max(0.0)
-        .cos();
+    let from_normals = (from_axis - normals).max(0.0);
+    let at_light = (from_normals - subtended).max(0.0).cos();
+    let to_normal = angle(normal.dot(to_light) / distance);
+    let at_surface = (to_normal - subtended).max(0.0).cos();
     let edge = f64::from(LightCluster::EDGE);
     if at_surface <= 0.0 || at_light <= f64::from(cluster.cos_emission) - edge {
         return 0.0;
     }
-    f64::from(cluster.intensity) * at_light.max(edge) * at_surface / distance2.max(radius2)
+    let middle = f64::from(LightCluster::MIDDLE);
+    let mixed = |bound: f64, cos: f64| (1.0 - middle) * bound + middle * cos.max(0.0).min(bound);
+    let cosines =
+        mixed(at_light.max(edge), from_normals.cos()) * mixed(at_surface, to_normal.cos());
+    f64::from(cluster.intensity) * cosines / distance2.max(radius2)
 }

@@ -72,13 +72,13 @@ impl LightTree {
                 Link::Node(node) => &self.nodes[node],
             };
             let importance = node.importance(point, normal);
-            let total = sum(&importance);
-            if total <= 0.0 {
+            let ends = running_sums(&importance);
+            if ends[WIDTH - 1] <= 0.0 {
                 return None;
             }
-            let (child, remapped) = choose(&importance, total, u);
-            u = remapped;
-            pmf *= importance[child] / total;
+            let child;
+            (child, u) = choose(&importance, &ends, u);
+            pmf *= importance[child] / ends[WIDTH - 1];
             link = node.link(child);
         }
     }
@@ -95,7 +95,7 @@ impl LightTree {
             if importance[child] <= 0.0 {
                 return 0.0;
             }
-            pmf *= importance[child] / sum(&importance);
+            pmf *= importance[child] / running_sums(&importance)[WIDTH - 1];
             link = node.link(child);
         }
         pmf
@@ -115,23 +115,33 @@ impl LightTree {
     }
 }
 
-fn sum(importance: &[f32; WIDTH]) -> f32 {
+/// The sums of the first one, two and so on, which never fall.
+fn running_sums(importance: &[f32; WIDTH]) -> [f32; WIDTH] {
     let [a, b, c, d, e, f, g, h] = *importance;
-    ((a + b) + (c + d)) + ((e + f) + (g + h))
+    let (ab, ef) = (a + b, e + f);
+    let abcd = ab + (c + d);
+    [
+        a,
+        ab,
+        ab + c,
+        abcd,
+        abcd + e,
+        abcd + ef,
+        abcd + (ef + g),
+        abcd + (ef + (g + h)),
+    ]
 }
 
 /// The child that `u` in [0, 1) falls on, and `u` stretched over it, in [0, 1) again. A child of
-/// importance 0 is never chosen.
-fn choose(importance: &[f32; WIDTH], total: f32, u: f32) -> (usize, f32) {
-    let target = u * total;
-    let (mut chosen, mut start, mut end) = (0, 0.0, 0.0);
-    for (i, &weight) in importance.iter().enumerate() {
-        // Rounding may leave the target past the end: then the last child that has a share is it.
-        if weight > 0.0 && target >= end {
-            (chosen, start) = (i, end);
-        }
-        end += weight;
-    }
+/// importance 0 is never chosen if there is another.
+fn choose(importance: &[f32; WIDTH], ends: &[f32; WIDTH], u: f32) -> (usize, f32) {
+    // Less than the last sum even when rounded, because `u` is at most 1 − 2⁻²⁴.
+    let target = u.min(ONE_MINUS_EPSILON) * ends[WIDTH - 1];
+    let passed = ends[..WIDTH - 1]
+        .iter()
+        .map(|&end| usize::from(target >= end));
+    let chosen: usize = passed.sum();
+    let start = if chosen == 0 { 0.0 } else { ends[chosen - 1] };
     let remapped = (target - start) / importance[chosen];
     (chosen, remapped.clamp(0.0, ONE_MINUS_EPSILON))
 }

@@ -4,8 +4,6 @@ use super::super::bounds::EmissionBounds;
 
 /// Children of a node.
 pub(super) const WIDTH: usize = 8;
-/// Children whose importance is computed at once.
-const LANES: usize = 4;
 /// In a link: the child is a part, not a node.
 const PART: u32 = 1 << 31;
 /// In a link: the child shines against its axis too.
@@ -69,6 +67,10 @@ impl LightCluster {
     pub const INSIDE: f32 = 1.001;
     /// Emission this close to the edge of its cone is never left out: axes and cosines are rounded.
     pub const EDGE: f32 = 1e-4;
+    /// The share of the cosines of the middle, the rest is that of their bounds. Found by measurement:
+    /// with 0, small error remains where clusters are wide; with 1, lights just below the horizon of
+    /// their middle are missed.
+    pub const MIDDLE: f32 = 0.7;
 }
 
 impl Node {
@@ -132,79 +134,66 @@ impl Node {
     /// if nothing is in the way, in arbitrary units; 0 only where it gives none.
     ///
     /// Conty Estevez and Kulla 2018, "Importance Sampling of Many Lights with Adaptive Tree
-    /// Splitting", section 4.2, with the cosine at the surface bounded in the same way: angles are
-    /// made smaller by what the sphere around the child subtends.
+    /// Splitting", section 4.2, bounds the cosine at the light: the angle is made smaller by what
+    /// the sphere around the child subtends. Here the cosine at the surface is bounded in the same
+    /// way, and both are then mixed with the cosines of the middle, which are nearer the mean.
     pub(super) fn importance(&self, point: Vec3, normal: Vec3) -> [f32; WIDTH] {
-        let mut all = [0.0; WIDTH];
-        for start in (0..WIDTH).step_by(LANES) {
-            for lane in 0..LANES {
-                let i = start + lane;
-                all[i] = self.importance_of(i, point, normal);
-            }
-        }
-        all
+        std::array::from_fn(|i| self.importance_of(i, point, normal))
     }
 
+    /// No branches, so that the compiler does several children at once.
     #[inline(always)]
     fn importance_of(&self, i: usize, point: Vec3, normal: Vec3) -> f32 {
-        let (x, y, z) = (
-            self.x[i] - point.x,
-            self.y[i] - point.y,
-            self.z[i] - point.z,
-        );
+        let x = self.x[i] - point.x;
+        let y = self.y[i] - point.y;
+        let z = self.z[i] - point.z;
+        let radius = self.radius[i];
+        let r2 = radius * radius;
         let d2 = (x * x + y * y + z * z).max(LightCluster::LEAST_DISTANCE2);
         let inverse = 1.0 / d2.sqrt();
-        let r2 = self.radius[i] * self.radius[i];
         let is_inside = d2 <= r2 * LightCluster::INSIDE;
         // The half angle that the sphere subtends.
-        let sin_b = self.radius[i] * inverse;
-        let cos_b = (1.0 - sin_b * sin_b).max(0.0).sqrt();
-        let along_axis =
-            x * axis(self.axis[0][i]) + y * axis(self.axis[1][i]) + z * axis(self.axis[2][i]);
-        let cos_w = -along_axis * inverse;
-        let cos_w = if self.link[i] & TWO_SIDED == 0 {
-            cos_w
+        let sin_b = radius * inverse;
+        let cos_b = sine(sin_b);
+        let [ax, ay, az] = [0, 1, 2].map(|k| axis(self.axis[k][i]));
+        let along_axis = -(x * ax + y * ay + z * az) * inverse;
+        let two_sided = self.link[i] & TWO_SIDED != 0;
+        let cos_w = if two_sided {
+            along_axis.abs()
         } else {
-            cos_w.abs()
+            along_axis
         };
-        let sin_w = sine(cos_w);
+        // From the nearest normal.
         let cos_o = cosine(self.cos_normals[i]);
-        let sin_o = sine(cos_o);
-        let in_cone = cos_w >= cos_o;
-        let cos_x = if in_cone {
-            1.0
-        } else {
-            cos_w * cos_o + sin_w * sin_o
-        };
-        let sin_x = if in_cone {
-            0.0
-        } else {
-            sin_w * cos_o - cos_w * sin_o
-        };
-        let at_light = if cos_x >= cos_b {
-            1.0
-        } else {
-            cos_x * cos_b + sin_x * sin_b
-        };
+        let (sin_w, sin_o) = (sine(cos_w), sine(cos_o));
+        let (cos_wo, sin_wo) = (cos_w * cos_o + sin_w * sin_o, sin_w * cos_o - cos_w * sin_o);
+        let is_normal = cos_w >= cos_o;
+        let cos_x = if is_normal { 1.0 } else { cos_wo };
+        let sin_x = if is_normal { 0.0 } else { sin_wo };
+        // From the nearest normal to the nearest point, and from the surface's normal to it.
+        let at_light = narrowed((cos_x, sin_x), (cos_b, sin_b));
         let cos_i = (x * normal.x + y * normal.y + z * normal.z) * inverse;
-        let at_surface = if cos_i >= cos_b {
-            1.0
-        } else {
-            cos_i * cos_b + sine(cos_i) * sin_b
-        };
-        let (at_light, at_surface) = if is_inside {
-            (1.0, 1.0)
-        } else {
-            (at_light, at_surface.max(0.0))
-        };
+        let at_surface = narrowed((cos_i, sine(cos_i)), (cos_b, sin_b)).max(0.0);
+        let at_light = if is_inside { 1.0 } else { at_light };
+        let at_surface = if is_inside { 1.0 } else { at_surface };
+        let mean_at_light = mixed(at_light.max(LightCluster::EDGE), cos_x);
+        let irradiance = self.intensity[i] * mean_at_light * mixed(at_surface, cos_i) / d2.max(r2);
         let is_emitting = at_light > cosine(self.cos_emission[i]) - LightCluster::EDGE;
-        let at_light = if is_emitting {
-            at_light.max(LightCluster::EDGE)
-        } else {
-            0.0
-        };
-        self.intensity[i] * at_light * at_surface / d2.max(r2)
+        if is_emitting { irradiance } else { 0.0 }
     }
+}
+
+/// The cosine of an angle made smaller by another, at least 0; both by cosine and sine.
+fn narrowed((cos_a, sin_a): (f32, f32), (cos_b, sin_b): (f32, f32)) -> f32 {
+    let difference = cos_a * cos_b + sin_a * sin_b;
+    if cos_a >= cos_b { 1.0 } else { difference }
+}
+
+/// The bound of a cosine, mixed with the cosine of the middle where that is positive.
+fn mixed(bound: f32, middle: f32) -> f32 {
+    // The bound is 0 where nothing is in front; rounding must not let the other bring it back.
+    let mean = bound + (middle.clamp(0.0, bound.max(0.0)) - bound) * LightCluster::MIDDLE;
+    mean.max(0.0)
 }
 
 fn axis(stored: i16) -> f32 {
