@@ -78,6 +78,7 @@ impl Reference {
             max_depth: MaxDepth(5),
             only_last_bounce: false,
             seed: 7,
+            replicates: 1,
         };
         let (pixels, counts) = picture(&self.scene, &self.camera, settings, SIZE, samples);
         assert_eq!(counts.invalid_samples, 0, "{}", self.name);

@@ -1,11 +1,13 @@
 //! Floor 1: random numbers as pure functions, warps with their densities, discrete and tabulated
 //! distributions, multiple-importance weights.
 
+mod digital_net;
 mod distribution_1d;
 mod distribution_2d;
 mod heuristic;
 mod lanes;
 mod path_sampler;
+mod scramble;
 mod warp;
 
 pub use distribution_1d::Distribution1d;

@@ -1,5 +1,8 @@
 use glam::Vec2;
 
+use super::digital_net::{index_in_pair, point};
+use super::scramble::{mix_32, mix_64, scramble, shuffle};
+
 /// What a random number is used for at one bounce; together with the bounce it is the dimension.
 ///
 /// Numbers are addressed, never drawn in sequence, so that leaving one out changes no other.
@@ -24,43 +27,96 @@ pub enum Slot {
 }
 
 impl Slot {
-    fn index(self) -> u64 {
+    fn index(self) -> u32 {
         match self {
             Self::Pixel => 0,
             Self::Lens => 1,
             Self::Scatter => 2,
             Self::Lobe => 3,
             Self::Roulette => 4,
-            Self::LightChoice(n) => 8 + 3 * u64::from(n),
-            Self::LightPoint(n) => 9 + 3 * u64::from(n),
-            Self::Hemisphere(n) => 10 + 3 * u64::from(n),
+            Self::LightChoice(n) => 8 + 3 * n,
+            Self::LightPoint(n) => 9 + 3 * n,
+            Self::Hemisphere(n) => 10 + 3 * n,
         }
     }
+
+    fn points(self, bounce: u32) -> Points {
+        match (self, bounce) {
+            (Self::Pixel, 0) => Points::Pair(0),
+            (Self::Scatter, 0..=2) => Points::Pair(1 + 2 * bounce as usize),
+            (Self::LightPoint(0), 0..=2) => Points::Pair(2 + 2 * bounce as usize),
+            (Self::Roulette, _) => Points::Independent,
+            _ => Points::Shuffled,
+        }
+    }
+}
+
+/// The points of a slot over the samples of a pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Points {
+    /// A pair of dimensions of the net: where most of a path's variance hangs.
+    Pair(usize),
+    /// Low-discrepancy points in an order of their own.
+    Shuffled,
+    /// Independent points: where an even spread gains nothing.
+    Independent,
 }
 
 /// The random numbers of sample `sample` of pixel `pixel`: a pure function of
 /// (seed, pixel, sample, bounce, slot).
+///
+/// Over the samples of one pixel they are low-discrepancy points, scrambled at random: in each slot
+/// the first 2ᵏ samples have one point in each elementary interval of area 2⁻ᵏ (and so have the
+/// next 2ᵏ). The pixel's own, and the scatter and (first) light slots of the first three bounces
+/// are pairs of one net, so that they are spread well together; every other slot has the points in
+/// an order of its own, but for roulette, whose numbers are independent. Different pixels, seeds and replicates are independent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PathSampler {
-    key: u64,
+    /// Of seed, pixel and replicate.
+    key: [u32; 2],
+    /// Number of the sample in its replicate.
+    index: u32,
 }
 
 impl PathSampler {
-    /// The numbers of one path. `pixel` is x + y · 2³² of the whole image, so that regions and
-    /// tiles see the same numbers.
+    /// The numbers of one path, of a pixel of the whole image, so that regions and tiles see the
+    /// same numbers.
     pub fn new(seed: u64, pixel: [u32; 2], sample: u32) -> Self {
+        Self::replicated(seed, pixel, sample, 1)
+    }
+
+    /// The same with the samples of a pixel dealt out to `replicates` (at least 1) sequences that
+    /// are independent of each other: sample i is number i / `replicates` of replicate
+    /// i mod `replicates`. The spread of the means of the replicates is an honest measure of the
+    /// error, while the spread of low-discrepancy samples is too large (Owen 1997, "Monte Carlo
+    /// Variance of Scrambled Net Quadrature").
+    pub fn replicated(seed: u64, pixel: [u32; 2], sample: u32, replicates: u32) -> Self {
         let pixel = u64::from(pixel[0]) | (u64::from(pixel[1]) << 32);
-        let key = mix(mix(seed ^ 0x9E37_79B9_7F4A_7C15).wrapping_add(pixel));
+        let key = mix_64(mix_64(seed ^ 0x9E37_79B9_7F4A_7C15).wrapping_add(pixel));
+        let replicate = u64::from(sample % replicates);
+        let key = mix_64(key ^ replicate.wrapping_mul(0xD1B5_4A32_D192_ED03));
         Self {
-            key: mix(key ^ u64::from(sample).wrapping_mul(0xD1B5_4A32_D192_ED03)),
+            key: [key as u32, (key >> 32) as u32],
+            index: sample / replicates,
         }
     }
 
-    /// Two independent numbers in [0, 1), on the lattice of multiples of 2⁻²⁴ (never 1).
+    /// Two numbers in [0, 1), on the lattice of multiples of 2⁻²⁴ (never 1).
     pub fn get_2d(&self, bounce: u32, slot: Slot) -> Vec2 {
-        let dimension = (u64::from(bounce) << 40) ^ slot.index();
-        let h = mix(self.key ^ dimension.wrapping_mul(0xA076_1D64_78BD_642F));
-        Vec2::new(unit(h as u32), unit((h >> 32) as u32))
+        // 2²⁰ slots for each of 4096 bounces; no path is longer.
+        let dimension = bounce.rotate_left(20) ^ slot.index();
+        let seed_x = mix_32(self.key[0] ^ dimension.wrapping_mul(0x9E37_79B1));
+        let seed_y = mix_32(self.key[1] ^ seed_x);
+        let index = match slot.points(bounce) {
+            Points::Pair(pair) => index_in_pair(pair, self.index),
+            Points::Shuffled => shuffle(self.index, mix_32(seed_x ^ seed_y)),
+            Points::Independent => {
+                let x = mix_32(seed_x ^ self.index.wrapping_mul(0x85EB_CA77));
+                return Vec2::new(unit(x), unit(mix_32(seed_y ^ x)));
+            }
+        };
+        let [x, y] = point(index);
+        Vec2::new(unit(scramble(x, seed_x)), unit(scramble(y, seed_y)))
     }
 
     /// One number in [0, 1).
@@ -69,81 +125,10 @@ impl PathSampler {
     }
 }
 
-fn unit(bits: u32) -> f32 {
-    (bits >> 8) as f32 * (1.0 / 16_777_216.0)
-}
-
-/// A bijective 64-bit mixer with full avalanche (Stafford 2011, "Better Bit Mixing", variant 13).
-fn mix(mut x: u64) -> u64 {
-    x = (x ^ (x >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    x = (x ^ (x >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-    x ^ (x >> 31)
+/// The first 24 binary digits, of which the first is the lowest bit.
+fn unit(digits: u32) -> f32 {
+    (digits.reverse_bits() >> 8) as f32 * (1.0 / 16_777_216.0)
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn correlation(pairs: impl Iterator<Item = (f32, f32)>) -> f64 {
-        let (mut n, mut sx, mut sy, mut sxx, mut syy, mut sxy) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
-        for (x, y) in pairs {
-            let (x, y) = (f64::from(x), f64::from(y));
-            n += 1.0;
-            sx += x;
-            sy += y;
-            sxx += x * x;
-            syy += y * y;
-            sxy += x * y;
-        }
-        let cov = sxy / n - sx / n * (sy / n);
-        cov / ((sxx / n - (sx / n).powi(2)) * (syy / n - (sy / n).powi(2))).sqrt()
-    }
-
-    /// Test S16 of the stress list for neighbours in pixel, sample, bounce and slot: |r| < 4/√N,
-    /// widened to 4.8/√N because 200 coefficients are looked at.
-    #[test]
-    fn neighbours_are_uncorrelated() {
-        const N: u32 = 65_536;
-        let bound = 4.8 / f64::from(N).sqrt();
-        for bounce in 0..8 {
-            for slot in [
-                Slot::Pixel,
-                Slot::Scatter,
-                Slot::Roulette,
-                Slot::LightPoint(0),
-                Slot::LightPoint(1),
-            ] {
-                let at =
-                    |x: u32, y: u32, s: u32, b: u32| PathSampler::new(7, [x, y], s).get_2d(b, slot);
-                let cases = [
-                    correlation((0..N).map(|i| (at(i, 3, 0, bounce).x, at(i + 1, 3, 0, bounce).x))),
-                    correlation((0..N).map(|i| (at(i, 3, 0, bounce).x, at(i, 4, 0, bounce).x))),
-                    correlation((0..N).map(|i| (at(5, 3, i, bounce).x, at(5, 3, i + 1, bounce).x))),
-                    correlation((0..N).map(|i| (at(5, 3, i, bounce).x, at(5, 3, i, bounce + 1).x))),
-                    correlation((0..N).map(|i| (at(5, 3, i, bounce).x, at(5, 3, i, bounce).y))),
-                ];
-                for r in cases {
-                    assert!(r.abs() < bound, "bounce {bounce} {slot:?}: {cases:?}");
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn numbers_stay_below_one_and_are_uniform() {
-        let n = 200_000_u32;
-        let mut bins = [0_u32; 64];
-        for i in 0..n {
-            let u = PathSampler::new(1, [i % 640, i / 640], 0).get_2d(2, Slot::Scatter);
-            assert!((0.0..1.0).contains(&u.x) && (0.0..1.0).contains(&u.y));
-            bins[(u.x * 8.0) as usize * 8 + (u.y * 8.0) as usize] += 1;
-        }
-        let expected = f64::from(n) / 64.0;
-        let chi2: f64 = bins
-            .iter()
-            .map(|&b| (f64::from(b) - expected).powi(2) / expected)
-            .sum();
-        // 63 degrees of freedom: mean 63, deviation 11.2; four deviations.
-        assert!(chi2 < 108.0, "{chi2}");
-    }
-}
+mod tests;

@@ -157,7 +157,7 @@ mod tests {
                     continue;
                 }
                 for sample in samples.clone() {
-                    let u = PathSampler::new(11, [x, y], sample).get_1d(0, Slot::Lobe);
+                    let u = PathSampler::new(11, [x, y], sample).get_1d(0, Slot::Roulette);
                     let value = if u < p { 1.0 / p } else { 0.0 };
                     tile.pixels_mut()[index].add(Rgb::splat(value));
                 }

@@ -28,6 +28,7 @@ fn render(scene: &Scene, depth: u32, course_compatible: bool) -> Vec<PixelStats>
         max_depth: MaxDepth(depth),
         only_last_bounce: false,
         seed: 3,
+        replicates: 1,
     };
     let scene = prepared_as(scene, course_compatible);
     picture(&scene, &camera, settings, SIZE, (0, 4)).0
@@ -228,6 +229,7 @@ fn every_scene_renders_in_every_mode() {
                     max_depth: MaxDepth(5),
                     only_last_bounce: false,
                     seed: 0,
+                    replicates: 1,
                 };
                 let (pixels, counts) = picture(&prepared, &camera, settings, (64, 48), (0, 1));
                 let what = format!("{file} {mode:?}, course-compatible: {course_compatible}");

@@ -16,6 +16,7 @@ const SETTINGS: PathSettings = PathSettings {
     max_depth: MaxDepth(4),
     only_last_bounce: false,
     seed: 1,
+    replicates: 1,
 };
 
 fn compare(view: &View, settings: PathSettings, samples: u32) -> Comparison {

@@ -20,6 +20,7 @@ pub(crate) const SETTINGS: PathSettings = PathSettings {
     max_depth: MaxDepth(5),
     only_last_bounce: false,
     seed: 3,
+    replicates: 1,
 };
 
 /// A closed lumpy ball of radius about 1 with two material slots; 4 · `n`² − 4 · `n` triangles.

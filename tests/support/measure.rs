@@ -9,23 +9,27 @@ use softbox::integrator::{BATCH_SIZE, PathCounts, PathId, PathSettings, PathTrac
 use softbox::scene::{PrepareSettings, PreparedScene, Scene, prepare};
 use softbox::settings::{MaxDepth, Mode};
 
-/// Mean of many samples and its standard error, per channel.
+/// Samples of one replicate, of which [`blocks`] takes the mean as one value: the samples of a
+/// sequence are not independent, and their own spread would only say that the error is no larger.
+const REPLICATE: u32 = 64;
+
+/// Mean of many independent values and its standard error, per channel.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Estimate {
     pub n: f64,
     pub sum: [f64; 3],
     pub sum_of_squares: [f64; 3],
-    /// The largest sample.
+    /// The largest value.
     pub largest: f64,
 }
 
 impl Estimate {
-    pub fn add(&mut self, x: [f32; 3]) {
+    pub fn add(&mut self, x: [f64; 3]) {
         self.n += 1.0;
         for (c, &x) in x.iter().enumerate() {
-            self.sum[c] += f64::from(x);
-            self.sum_of_squares[c] += f64::from(x) * f64::from(x);
-            self.largest = self.largest.max(f64::from(x));
+            self.sum[c] += x;
+            self.sum_of_squares[c] += x * x;
+            self.largest = self.largest.max(x);
         }
     }
 
@@ -63,6 +67,7 @@ pub fn settings(mode: Mode, max_depth: MaxDepth) -> PathSettings {
         max_depth,
         only_last_bounce: false,
         seed: 1,
+        replicates: 1,
     }
 }
 
@@ -91,7 +96,8 @@ pub fn measure(
     blocks(scene, camera, settings, (1, 1), samples)[0]
 }
 
-/// Radiance over each pixel of a picture of `size` pixels.
+/// Radiance over each pixel of a picture of `size` pixels: one value of an estimate is the mean of
+/// a replicate of some 64 samples.
 pub fn blocks(
     scene: &PreparedScene,
     camera: &Camera,
@@ -100,27 +106,50 @@ pub fn blocks(
     samples: u32,
 ) -> Vec<Estimate> {
     let camera = RayCamera::new(camera, size.0, size.1, scene.normalization());
+    let replicates = samples / REPLICATE;
+    let length = samples / replicates;
+    let settings = PathSettings {
+        replicates,
+        ..settings
+    };
     let tracer = PathTracer::new(scene, &camera, settings);
+    let replicates_of_a_batch = BATCH_SIZE as u32 / length;
     (0..size.0 * size.1)
         .into_par_iter()
         .map(|pixel| {
-            let ids: Vec<PathId> = (0..samples)
-                .map(|sample| PathId {
-                    pixel: [pixel % size.0, pixel / size.0],
-                    sample,
-                })
-                .collect();
-            ids.par_chunks(BATCH_SIZE)
-                .map(|ids| {
-                    let mut radiance = vec![glam::Vec3::ZERO; ids.len()];
-                    let mut counts = PathCounts::default();
-                    Wavefront::default().trace(&tracer, ids, &mut radiance, &mut counts);
-                    assert_eq!(counts.invalid_samples, 0);
-                    let mut estimate = Estimate::default();
-                    radiance.iter().for_each(|r| estimate.add(r.to_array()));
-                    estimate
+            let pixel = [pixel % size.0, pixel / size.0];
+            let firsts = (0..replicates)
+                .into_par_iter()
+                .step_by(replicates_of_a_batch as usize);
+            firsts
+                .map(|first| {
+                    let end = replicates.min(first + replicates_of_a_batch);
+                    let ids: Vec<PathId> = (first..end)
+                        .flat_map(|replicate| {
+                            let sample = move |i| i * replicates + replicate;
+                            (0..length).map(move |i| PathId {
+                                pixel,
+                                sample: sample(i),
+                            })
+                        })
+                        .collect();
+                    replicate_means(&tracer, &ids, length as usize)
                 })
                 .reduce(Estimate::default, Estimate::merge)
         })
         .collect()
+}
+
+/// The means of every `length` paths.
+fn replicate_means(tracer: &PathTracer<'_>, ids: &[PathId], length: usize) -> Estimate {
+    let mut radiance = vec![glam::Vec3::ZERO; ids.len()];
+    let mut counts = PathCounts::default();
+    Wavefront::default().trace(tracer, ids, &mut radiance, &mut counts);
+    assert_eq!(counts.invalid_samples, 0);
+    let mut estimate = Estimate::default();
+    for samples in radiance.chunks_exact(length) {
+        let sum: glam::DVec3 = samples.iter().map(|r| r.as_dvec3()).sum();
+        estimate.add((sum / length as f64).to_array());
+    }
+    estimate
 }

@@ -9,7 +9,9 @@ use super::surface::Surface;
 use super::trace::{Ray, closest};
 use super::{environment, light, light_choice, warp};
 use crate::bsdf::Bsdf;
-use crate::integrator::path::{MIN_SURVIVAL, TRAPPED_AFTER, TRAPPED_SURVIVAL};
+use crate::integrator::path::{
+    MIN_SURVIVAL, SURVIVAL_OF_THROUGHPUT, TRAPPED_AFTER, TRAPPED_SURVIVAL,
+};
 use crate::integrator::{PathId, PathTracer};
 use crate::light::Light;
 use crate::sampling::{PathSampler, Slot};
@@ -111,7 +113,7 @@ pub fn reference_f64(tracer: &PathTracer<'_>, id: PathId) -> DVec3 {
 }
 
 fn start(tracer: &PathTracer<'_>, id: PathId) -> Path {
-    let sampler = PathSampler::new(tracer.settings.seed, id.pixel, id.sample);
+    let sampler = tracer.sampler(id);
     let pixel = glam::UVec2::from_array(id.pixel).as_dvec2();
     let position = pixel + sampler.get_2d(0, Slot::Pixel).as_dvec2();
     let lens = || warp::disk(sampler.get_2d(0, Slot::Lens).as_dvec2());
@@ -229,10 +231,8 @@ fn survives(path: &mut Path, u: f64) -> bool {
     } else {
         f64::from(TRAPPED_SURVIVAL)
     };
-    let survival = path
-        .throughput
-        .max_element()
-        .clamp(f64::from(MIN_SURVIVAL), most);
+    let wanted = f64::from(SURVIVAL_OF_THROUGHPUT) * path.throughput.max_element();
+    let survival = wanted.clamp(f64::from(MIN_SURVIVAL), most);
     path.throughput /= survival;
     u < survival && path.throughput != DVec3::ZERO
 }

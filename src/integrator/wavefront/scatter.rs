@@ -2,7 +2,7 @@ use std::f32::consts::FRAC_1_PI;
 
 use glam::Vec3;
 
-use super::super::path::{MIN_SURVIVAL, TRAPPED_AFTER, TRAPPED_SURVIVAL};
+use super::super::path::{MIN_SURVIVAL, SURVIVAL_OF_THROUGHPUT, TRAPPED_AFTER, TRAPPED_SURVIVAL};
 use super::paths::{NONE, PathState};
 use super::shade::{Group, Shade};
 use crate::math::{LANES, Lanes, Ray, Vec3Lanes, offset_origin_lanes};
@@ -36,10 +36,8 @@ impl Shade<'_, '_> {
             } else {
                 TRAPPED_SURVIVAL
             };
-            let survival = throughput
-                .max_element()
-                .max(L::splat(MIN_SURVIVAL))
-                .min(L::splat(most));
+            let wanted = L::splat(SURVIVAL_OF_THROUGHPUT) * throughput.max_element();
+            let survival = wanted.max(L::splat(MIN_SURVIVAL)).min(L::splat(most));
             alive = alive & u.lt(survival);
             throughput = Vec3Lanes::new(
                 throughput.x / survival,
