@@ -1,12 +1,14 @@
 //! Floor 1: random numbers as pure functions, warps with their densities, discrete and tabulated
 //! distributions, multiple-importance weights.
 
+mod bilinear;
 mod distribution_1d;
 mod distribution_2d;
 mod heuristic;
 mod path_sampler;
 mod warp;
 
+pub use bilinear::Bilinear;
 pub use distribution_1d::Distribution1d;
 pub use distribution_2d::Distribution2d;
 pub use heuristic::power_heuristic;
