@@ -1,9 +1,12 @@
 //! Direct light at a vertex: which samples are taken, and the rays they ask for.
 
+use glam::Vec3;
+
 use super::path::{Path, Vertex};
 use super::{PathSettings, PathTracer};
 use crate::color::Rgb;
 use crate::geometry::Hit;
+use crate::light::LightSampleContext;
 use crate::math::{Ray, SHADOW_T_MAX, gamma, offset_origin};
 use crate::sampling::{Slot, UNIFORM_HEMISPHERE_PDF, power_heuristic, uniform_hemisphere};
 use crate::scene::PreparedScene;
@@ -149,10 +152,18 @@ impl PathTracer<'_> {
             .sampler
             .get_2d(path.bounce, Slot::LightChoice(number))
             .y;
-        let sample =
-            self.scene
-                .light(light)
-                .sample(self.scene.shapes(), vertex.surface.point, u_part, u)?;
+        let shares = self.shares_emission(vertex.bsdf);
+        // The scattered rays know their density without the normal.
+        let from = LightSampleContext {
+            point: vertex.surface.point,
+            normal: if shares {
+                Vec3::ZERO
+            } else {
+                vertex.lit_normal()
+            },
+        };
+        let light_at = self.scene.light(light);
+        let sample = light_at.sample(self.scene.shapes(), &from, u_part, u)?;
         let local = vertex.local(sample.wi)?;
         let scattered = vertex.bsdf.eval(vertex.wo, local) * local.z.abs();
         let mut contribution =
@@ -160,7 +171,7 @@ impl PathTracer<'_> {
         if contribution == Rgb::ZERO {
             return None;
         }
-        if self.shares_emission() && !sample.is_delta {
+        if shares && !sample.is_delta {
             let n = self.settings.light_samples as f32;
             let light_pdf = n * sample.pdf * self.scene.light_pmf(light);
             contribution *= power_heuristic(light_pdf, vertex.bsdf.pdf(vertex.wo, local));
@@ -174,11 +185,6 @@ impl PathTracer<'_> {
             Ray::new(origin, sample.wi)
         };
         Some(DirectRay::Shadow { ray, contribution })
-    }
-
-    /// True when light samples and scattered rays share emission by multiple importance.
-    pub(super) fn shares_emission(&self) -> bool {
-        self.settings.mode == Mode::Best && !self.scene.is_course_compatible()
     }
 
     /// What a gathering ray brings back.

@@ -2,10 +2,12 @@ use std::f32::consts::PI;
 
 use glam::{Vec2, Vec3};
 
-use super::{LightHit, LightSample, direction_to, usable_pdf};
+use super::parallelogram::Parallelogram;
+use super::part::{AreaPart, Part, parts_of};
+use super::{LightHit, LightSample, LightSampleContext, direction_to, usable_pdf};
 use crate::color::{Rgb, luminance};
 use crate::geometry::Shapes;
-use crate::sampling::{Distribution1d, uniform_triangle};
+use crate::sampling::Distribution1d;
 
 /// Where an area light is.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,55 +49,30 @@ pub struct AreaLight {
     area: f32,
     /// Chooses among `parts` by area; nothing when the whole area is zero.
     by_area: Option<Distribution1d>,
-    /// The triangles or the rectangle, at hand for sampling.
+    /// What is sampled.
     parts: Vec<Part>,
-}
-
-/// A triangle or parallelogram of an area light.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Part {
-    corner: Vec3,
-    edge_1: Vec3,
-    edge_2: Vec3,
-    /// Unit; nothing for a part without area.
-    normal: Option<Vec3>,
-    primitive: u32,
-}
-
-impl Part {
-    fn new(corner: Vec3, edge_1: Vec3, edge_2: Vec3, primitive: u32) -> Self {
-        Self {
-            corner,
-            edge_1,
-            edge_2,
-            normal: edge_1.cross(edge_2).try_normalize(),
-            primitive,
-        }
-    }
+    /// Each primitive with its part, by primitive.
+    part_of: Vec<(u32, u32)>,
 }
 
 impl AreaLight {
     /// A light of the given shape that emits `radiance` from its front, or from both sides.
     ///
-    /// The ids of [`AreaShape::Triangles`] must be of triangles of `shapes`. Degenerate triangles
-    /// emit nothing.
+    /// The ids of [`AreaShape::Triangles`] must be of triangles of `shapes`, each at most once.
+    /// Degenerate triangles emit nothing.
     pub fn new(shapes: &Shapes, shape: AreaShape, radiance: Rgb, two_sided: bool) -> Self {
-        let (parts, share): (Vec<_>, f32) = match &shape {
-            AreaShape::Triangles { primitives } => {
-                let parts = primitives.iter().map(|&id| {
-                    let [p0, p1, p2] = shapes.vertices(id as usize);
-                    Part::new(p0, p1 - p0, p2 - p0, id)
-                });
-                (parts.collect(), 0.5)
-            }
+        let (parts, part_of) = match &shape {
+            AreaShape::Triangles { primitives } => parts_of(shapes, primitives),
             &AreaShape::Rectangle {
                 corner,
                 edge_u,
                 edge_v,
-            } => (vec![Part::new(corner, edge_u, edge_v, u32::MAX)], 1.0),
+            } => {
+                let whole = Parallelogram::new(corner, edge_u, edge_v);
+                (whole.map(Part::Parallelogram).into_iter().collect(), vec![])
+            }
         };
-        let area = |part: &Part| share * part.edge_1.cross(part.edge_2).length();
-        let areas: Vec<f32> = parts.iter().map(area).collect();
+        let areas: Vec<f32> = parts.iter().map(Part::area).collect();
         let usable = areas.iter().filter(|area| area.is_finite());
         Self {
             shape,
@@ -105,6 +82,7 @@ impl AreaLight {
             area: usable.map(|&area| f64::from(area)).sum::<f64>() as f32,
             by_area: Distribution1d::new(&areas),
             parts,
+            part_of,
         }
     }
 
@@ -134,10 +112,29 @@ impl AreaLight {
         self.density
     }
 
-    /// The triangle that `u` in [0, 1) picks in proportion to area, counted from 0; 0 for a
-    /// rectangle, `None` for a light without area.
+    /// Number of parts that are sampled, those without area included.
+    pub fn part_count(&self) -> usize {
+        self.parts.len()
+    }
+
+    /// Part `index`, below [`Self::part_count`].
+    pub fn part(&self, index: usize) -> AreaPart {
+        self.parts[index].outline()
+    }
+
+    /// The part that `u` in [0, 1) picks in proportion to area; `None` for a light without area.
     pub fn choose_part(&self, u: f32) -> Option<usize> {
         self.by_area.as_ref().map(|parts| parts.sample(u).0)
+    }
+
+    /// The part that `primitive` belongs to, `u32::MAX` being the rectangle that rays do not meet;
+    /// `None` when it is not of this light.
+    pub fn part_of(&self, primitive: u32) -> Option<usize> {
+        if primitive == u32::MAX {
+            return (!self.parts.is_empty()).then_some(0);
+        }
+        let found = self.part_of.binary_search_by_key(&primitive, |pair| pair.0);
+        found.ok().map(|place| self.part_of[place].1 as usize)
     }
 
     /// Total area of one side, in scene units squared.
@@ -145,36 +142,75 @@ impl AreaLight {
         self.area
     }
 
-    /// A point evenly spread over the area.
-    pub(super) fn sample(&self, from: Vec3, u_choice: f32, u: Vec2) -> Option<LightSample> {
-        let (point, normal, primitive) = self.point_on(u_choice, u)?;
-        let (wi, distance) = direction_to(from, point)?;
-        let hit = LightHit {
-            point,
-            normal,
-            distance,
-            primitive,
+    /// Parts by area; parallelograms by [`Parallelogram::sample`], triangles evenly by area. Those of
+    /// [`AreaDensity::Course`] all by area.
+    pub(super) fn sample(
+        &self,
+        from: &LightSampleContext,
+        u_choice: f32,
+        u: Vec2,
+    ) -> Option<LightSample> {
+        let part = &self.parts[self.choose_part(u_choice)?];
+        let normal = part.normal()?;
+        let warped = self.warped(part);
+        let (point, pdf) = match warped {
+            Some(whole) => whole.sample(from, u)?,
+            None => (part.even_point(u), 1.0),
+        };
+        let (wi, distance) = direction_to(from.point, point)?;
+        let cos = self.emission_cosine(normal, wi);
+        let pdf = match warped {
+            _ if cos.is_nan() || cos <= 0.0 => return None,
+            Some(whole) => pdf * (whole.area / self.area),
+            None => self.even_pdf(distance, cos),
         };
         Some(LightSample {
             wi,
             distance,
             radiance: self.radiance,
-            pdf: usable_pdf(self.pdf(wi, hit))?,
+            pdf: usable_pdf(pdf)?,
             is_delta: false,
             point,
             normal,
         })
     }
 
-    pub(super) fn pdf(&self, wi: Vec3, hit: LightHit) -> f32 {
+    pub(super) fn pdf(&self, from: &LightSampleContext, wi: Vec3, hit: LightHit) -> f32 {
         let cos = self.emission_cosine(hit.normal, wi);
-        if !(cos > 0.0 && self.area > 0.0) {
+        if cos.is_nan() || cos <= 0.0 || self.area <= 0.0 {
             return 0.0;
         }
+        let Some(part) = self.part_of(hit.primitive) else {
+            return 0.0;
+        };
+        match self.warped(&self.parts[part]) {
+            Some(whole) => whole.pdf(from, hit.point) * (whole.area / self.area),
+            None => self.even_pdf(hit.distance, cos),
+        }
+    }
+
+    /// True for a single parallelogram: of several parts one that is near may be chosen rarely.
+    pub(super) fn is_bounded(&self) -> bool {
+        match &self.parts[..] {
+            [only] => self.warped(only).is_some(),
+            _ => false,
+        }
+    }
+
+    /// The parallelogram that is not sampled evenly by area.
+    fn warped<'a>(&self, part: &'a Part) -> Option<&'a Parallelogram> {
+        match (part, self.density) {
+            (Part::Parallelogram(whole), AreaDensity::Correct) => Some(whole),
+            _ => None,
+        }
+    }
+
+    /// Per steradian, for points evenly spread over the area.
+    fn even_pdf(&self, distance: f32, cos: f32) -> f32 {
         // One factor at a time: the square of a tiny distance would vanish.
-        let per_distance = hit.distance / (self.area * cos);
+        let per_distance = distance / (self.area * cos);
         match self.density {
-            AreaDensity::Correct => per_distance * hit.distance,
+            AreaDensity::Correct => per_distance * distance,
             AreaDensity::Course => per_distance,
         }
     }
@@ -196,16 +232,5 @@ impl AreaLight {
     fn emission_cosine(&self, normal: Vec3, wi: Vec3) -> f32 {
         let cos = -normal.dot(wi);
         if self.two_sided { cos.abs() } else { cos }
-    }
-
-    /// Point, unit normal and primitive.
-    fn point_on(&self, u_choice: f32, u: Vec2) -> Option<(Vec3, Vec3, u32)> {
-        let part = &self.parts[self.choose_part(u_choice)?];
-        let (b1, b2) = match self.shape {
-            AreaShape::Triangles { .. } => uniform_triangle(u),
-            AreaShape::Rectangle { .. } => (u.x, u.y),
-        };
-        let point = part.corner + b1 * part.edge_1 + b2 * part.edge_2;
-        Some((point, part.normal?, part.primitive))
     }
 }

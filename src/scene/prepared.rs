@@ -9,7 +9,7 @@ use super::shared_mesh::SharedMesh;
 use crate::bsdf::Bsdf;
 use crate::color::Rgb;
 use crate::geometry::{Aggregate, Instance, InstanceStats, Shapes};
-use crate::light::{Light, LightHit, LightSampler};
+use crate::light::{Light, LightHit, LightSampleContext, LightSampler};
 use crate::math::Normalization;
 
 /// Index of the flat triangles in [`Tables::smooth`].
@@ -201,8 +201,8 @@ impl PreparedScene {
         })
     }
 
-    /// Solid-angle density with which [`Self::choose_light`] and light sampling from `from` make
-    /// the unit `direction` in which `surface` lies at `distance`.
+    /// Solid-angle density with which [`Self::choose_light`] and light sampling from `from`, no normal
+    /// given, make the unit `direction` in which `surface` lies at `distance`.
     pub fn light_pdf(
         &self,
         from: Vec3,
@@ -217,9 +217,13 @@ impl PreparedScene {
         if pmf == 0.0 {
             return 0.0;
         }
-        pmf * self
-            .light(light)
-            .pdf(self.shapes(), from, direction, light_hit(surface, distance))
+        let from = LightSampleContext::all_around(from);
+        pmf * self.light(light).pdf(
+            self.shapes(),
+            &from,
+            direction,
+            light_hit(surface, distance),
+        )
     }
 
     /// The same for the environment.
@@ -227,10 +231,11 @@ impl PreparedScene {
         let Some(light) = self.tables.environment else {
             return 0.0;
         };
+        let from = LightSampleContext::all_around(from);
         self.light_pmf(light)
             * self
                 .light(light)
-                .pdf(self.shapes(), from, direction, LightHit::INFINITE)
+                .pdf(self.shapes(), &from, direction, LightHit::INFINITE)
     }
 
     /// Light number `light`.
@@ -263,6 +268,14 @@ impl PreparedScene {
     pub fn light_pmf(&self, light: u32) -> f32 {
         // The sampled lights are all lights, or (course-compatible) never chosen by power.
         self.tables.sampler.pmf(light as usize)
+    }
+
+    /// True when a diffuse surface needs light samples only: there is one light, and what a sample of
+    /// it counts for is bounded.
+    pub fn light_samples_suffice(&self) -> bool {
+        let lights = 0..self.light_count() as u32;
+        let mut certain = lights.filter(|&light| self.light_pmf(light) == 1.0);
+        certain.any(|light| self.light(light).is_bounded())
     }
 
     /// The number of lights that uniform hemisphere directions stand in for, at least 1.

@@ -53,7 +53,9 @@ fn from_light(
         .sampler
         .get_2d(path.bounce, Slot::LightChoice(number))
         .y;
-    let from = vertex.surface.point;
+    let shares = tracer.shares_emission(vertex.bsdf);
+    let up = vertex.frame.to_world(DVec3::Z) * vertex.wo.z.signum();
+    let from = (vertex.surface.point, (!shares).then_some(up));
     let Some(sample) = light::sample(scene.light(index), scene.shapes(), from, u_part, u) else {
         return DVec3::ZERO;
     };
@@ -62,7 +64,7 @@ fn from_light(
     };
     let (value, scatter_pdf) = bsdf::eval_and_pdf(vertex.bsdf, vertex.wo, wi);
     let mut light = value * wi.z.abs() * sample.radiance / sample.pdf;
-    if tracer.shares_emission() && !sample.is_delta {
+    if shares && !sample.is_delta {
         let n = f64::from(tracer.settings.light_samples);
         let light_pdf = n * sample.pdf * f64::from(scene.light_pmf(index));
         light *= warp::power_heuristic(light_pdf, scatter_pdf);

@@ -2,9 +2,10 @@
 
 use glam::{DVec3, Vec2};
 
-use super::{environment, sphere_light, warp};
+use super::surface::Surface;
+use super::{area_light, environment, sphere_light};
 use crate::geometry::Shapes;
-use crate::light::{AreaDensity, AreaLight, AreaShape, Light, PointFalloff, SpotLight};
+use crate::light::{Light, PointFalloff, SpotLight};
 
 /// A direction in which a light is seen.
 #[derive(Clone, Copy, Debug)]
@@ -20,16 +21,17 @@ pub(super) struct LightSample {
     pub(super) end: Option<(DVec3, DVec3)>,
 }
 
-/// A direction from `from` to `light`; `None` where it sends nothing there.
+/// A direction from `from` to `light`; `None` where it sends nothing there. With a normal only light
+/// on its side counts.
 pub(super) fn sample(
     light: &Light,
     shapes: &Shapes,
-    from: DVec3,
+    (from, normal): (DVec3, Option<DVec3>),
     u_choice: f32,
     u: Vec2,
 ) -> Option<LightSample> {
     match light {
-        Light::Area(area) => sample_area(area, shapes, from, u_choice, u),
+        Light::Area(area) => area_light::sample(area, (from, normal), u_choice, u),
         Light::Sphere(sphere) => {
             let shape = shapes.sphere(sphere.primitive)?;
             sphere_light::sample(sphere, shape, from, u.as_dvec2())
@@ -59,18 +61,13 @@ pub(super) fn sample(
     }
 }
 
-/// The density of [`sample`] for the unit direction `wi` from `from`, which meets the surface of
-/// `light` at `point`, whose normal is `normal`, on a side that emits.
-pub(super) fn pdf(
-    light: &Light,
-    shapes: &Shapes,
-    from: DVec3,
-    (point, normal): (DVec3, DVec3),
-) -> f64 {
+/// The density of [`sample`], no normal given, for the direction from `from` in which it meets
+/// `surface`, a part of `light`, on a side that emits.
+pub(super) fn pdf(light: &Light, shapes: &Shapes, from: DVec3, surface: &Surface) -> f64 {
     match light {
         Light::Area(area) => {
-            let to_light = point - from;
-            area_pdf(area, to_light.length(), normal.dot(to_light.normalize()))
+            let end = (surface.point, surface.geometric_normal);
+            area_light::pdf(area, surface.primitive, from, end)
         }
         Light::Sphere(sphere) => shapes
             .sphere(sphere.primitive)
@@ -93,62 +90,6 @@ pub(super) fn emitted(light: &Light, normal: DVec3, wi: DVec3) -> DVec3 {
     } else {
         DVec3::ZERO
     }
-}
-
-fn sample_area(
-    area: &AreaLight,
-    shapes: &Shapes,
-    from: DVec3,
-    u_choice: f32,
-    u: Vec2,
-) -> Option<LightSample> {
-    let u = u.as_dvec2();
-    let part = area.choose_part(u_choice)?;
-    let (corner, edge_1, edge_2, (b1, b2)) = match area.shape() {
-        AreaShape::Triangles { primitives } => {
-            let [a, b, c] = shapes
-                .vertices(primitives[part] as usize)
-                .map(|v| v.as_dvec3());
-            (a, b - a, c - a, warp::triangle(u))
-        }
-        AreaShape::Rectangle {
-            corner,
-            edge_u,
-            edge_v,
-        } => {
-            let [a, e1, e2] = [corner, edge_u, edge_v].map(|v| v.as_dvec3());
-            (a, e1, e2, (u.x, u.y))
-        }
-    };
-    let point = corner + edge_1 * b1 + edge_2 * b2;
-    let normal = edge_1.cross(edge_2).normalize();
-    let to_light = point - from;
-    let wi = to_light.normalize();
-    let pdf = area_pdf(area, to_light.length(), normal.dot(wi));
-    (pdf > 0.0).then(|| LightSample {
-        wi,
-        radiance: area.radiance().as_dvec3(),
-        pdf,
-        is_delta: false,
-        end: Some((point, normal)),
-    })
-}
-
-/// 1 / A per area is r² / (A cos θ) per steradian; `cos_wi` is that of the direction to the light.
-fn area_pdf(area: &AreaLight, distance: f64, cos_wi: f64) -> f64 {
-    let cos = if area.is_two_sided() {
-        cos_wi.abs()
-    } else {
-        -cos_wi
-    };
-    if cos <= 0.0 {
-        return 0.0;
-    }
-    let falloff = match area.density() {
-        AreaDensity::Correct => distance * distance,
-        AreaDensity::Course => distance,
-    };
-    falloff / (f64::from(area.area()) * cos)
 }
 
 /// `irradiance` depends on the direction to the light and its squared distance.

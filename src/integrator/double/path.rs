@@ -140,10 +140,9 @@ fn meet_light(tracer: &PathTracer<'_>, path: &mut Path, surface: &Surface) {
         return;
     };
     let met = scene.light(index);
-    let place = (surface.point, surface.geometric_normal);
-    let emitted = light::emitted(met, place.1, path.ray.direction);
+    let emitted = light::emitted(met, surface.geometric_normal, path.ray.direction);
     add_emission(tracer, path, emitted, index, |from| {
-        light::pdf(met, scene.shapes(), from, place)
+        light::pdf(met, scene.shapes(), from, surface)
     });
 }
 
@@ -183,7 +182,7 @@ fn scatter(tracer: &PathTracer<'_>, path: &mut Path, vertex: &Vertex<'_>) -> boo
             (wi, weight)
         }
         Scattered::Smooth { wi, value, pdf } => {
-            path.previous = if tracer.shares_emission() {
+            path.previous = if tracer.shares_emission(vertex.bsdf) {
                 let from = vertex.surface.point;
                 Previous::Shared { from, pdf }
             } else {

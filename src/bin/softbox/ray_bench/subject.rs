@@ -4,6 +4,7 @@ use anyhow::anyhow;
 use glam::{DVec3, Vec2, Vec3};
 use softbox::camera::{Camera, Framing};
 use softbox::geometry::Shapes;
+use softbox::light::LightSampleContext;
 use softbox::math::Normalization;
 use softbox::scene::{Instancing, PrepareSettings, PreparedScene, Scene, initial_camera, prepare};
 use softbox::settings::CameraRule;
@@ -56,7 +57,12 @@ impl Lamp {
             Self::Scene(scene) => {
                 let (light, _) = scene.choose_light(choice)?;
                 let light = scene.light(light);
-                let sample = light.sample(scene.shapes(), from, part, Vec2::new(u, v))?;
+                let sample = light.sample(
+                    scene.shapes(),
+                    &LightSampleContext::all_around(from),
+                    part,
+                    Vec2::new(u, v),
+                )?;
                 Some((sample.wi, sample.distance))
             }
         }
