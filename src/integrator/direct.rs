@@ -1,12 +1,12 @@
 //! Direct light at a vertex: which samples are taken, and the rays they ask for.
 
-use glam::{Vec2, Vec3};
+use glam::Vec2;
 
 use super::path::{Path, Vertex};
 use super::{PathSettings, PathTracer};
 use crate::color::Rgb;
 use crate::geometry::Hit;
-use crate::light::LightSample;
+use crate::light::{LightSample, LightSampleContext};
 use crate::math::{Ray, SHADOW_T_MAX, gamma, offset_origin};
 use crate::sampling::{
     PathSampler, Slot, UNIFORM_HEMISPHERE_PDF, power_heuristic, uniform_hemisphere,
@@ -127,9 +127,12 @@ impl PathTracer<'_> {
     ) -> Option<DirectRay> {
         match self.plan.samples[number as usize] {
             DirectSample::Light { .. } | DirectSample::AnyLight { .. } => {
-                let from = (vertex.surface.point, vertex.lit_normal());
+                let from = LightSampleContext {
+                    point: vertex.surface.point,
+                    normal: vertex.lit_normal(),
+                };
                 let (sample, weight) =
-                    self.light_sample((path.sampler, path.bounce), from, number)?;
+                    self.light_sample((path.sampler, path.bounce), &from, number)?;
                 self.shadow_ray(path, vertex, &sample, weight)
             }
             DirectSample::Hemisphere { weight } => {
@@ -150,13 +153,12 @@ impl PathTracer<'_> {
         }
     }
 
-    /// Light sample `number` of the plan for a surface at a point, lit on the side of a normal, and
-    /// its weight; its density counts the choice of its light. `None` for a sample of the hemisphere
+    /// Light sample `number` of the plan for a surface, and its weight; its density counts the choice of its light. `None` for a sample of the hemisphere
     /// and where the light sends nothing.
     pub(super) fn light_sample(
         &self,
         (sampler, bounce): (PathSampler, u32),
-        (from, normal): (Vec3, Vec3),
+        from: &LightSampleContext,
         number: u32,
     ) -> Option<(LightSample, f32)> {
         let shapes = self.scene.shapes();
@@ -169,7 +171,10 @@ impl PathTracer<'_> {
             }
             DirectSample::AnyLight { weight } => {
                 let u = sampler.get_1d(bounce, Slot::LightChoice(number));
-                let choice = self.scene.light_sampler().sample(from, normal, u)?;
+                let choice = self
+                    .scene
+                    .light_sampler()
+                    .sample(from.point, from.normal, u)?;
                 let (light, part) = (self.scene.light(choice.light), choice.part as usize);
                 let sample = light.sample_part(shapes, part, from, numbers)?;
                 let pdf = choice.pmf * sample.pdf;
@@ -186,6 +191,7 @@ impl PathTracer<'_> {
         sample: &LightSample,
         weight: f32,
     ) -> Option<DirectRay> {
+        let shares = self.shares_emission(vertex.bsdf);
         let local = vertex.local(sample.wi)?;
         let scattered = vertex.bsdf.eval(vertex.wo, local) * local.z.abs();
         let mut contribution =
@@ -193,7 +199,7 @@ impl PathTracer<'_> {
         if contribution == Rgb::ZERO {
             return None;
         }
-        if self.shares_emission() && !sample.is_delta {
+        if shares && !sample.is_delta {
             let n = self.settings.light_samples as f32;
             contribution *= power_heuristic(n * sample.pdf, vertex.bsdf.pdf(vertex.wo, local));
         }
@@ -206,11 +212,6 @@ impl PathTracer<'_> {
             Ray::new(origin, sample.wi)
         };
         Some(DirectRay::Shadow { ray, contribution })
-    }
-
-    /// True when light samples and scattered rays share emission by multiple importance.
-    pub(super) fn shares_emission(&self) -> bool {
-        self.settings.mode == Mode::Best && !self.scene.is_course_compatible()
     }
 
     /// What a gathering ray brings back.

@@ -110,13 +110,10 @@ impl Vertex<'_> {
         (local.z * wi.dot(self.surface.geometric_normal) > 0.0).then_some(local)
     }
 
-    /// The shading normal on the side from which light is reflected.
+    /// The shading normal on the side of `wo`, from where alone light is scattered.
     pub(super) fn lit_normal(&self) -> Vec3 {
-        if self.wo.z < 0.0 {
-            -self.surface.shading_normal
-        } else {
-            self.surface.shading_normal
-        }
+        let normal = self.surface.shading_normal;
+        if self.wo.z < 0.0 { -normal } else { normal }
     }
 
     /// Where a ray towards `direction` starts.
@@ -141,6 +138,8 @@ pub struct PathTracer<'a> {
     pub settings: PathSettings,
     /// The direct light samples of each vertex.
     pub(super) plan: DirectPlan,
+    /// Diffuse vertices leave direct light to the light samples.
+    light_samples_suffice: bool,
 }
 
 impl<'a> PathTracer<'a> {
@@ -151,6 +150,7 @@ impl<'a> PathTracer<'a> {
             camera,
             settings,
             plan: DirectPlan::new(scene, &settings),
+            light_samples_suffice: scene.light_samples_suffice(),
         }
     }
 
@@ -232,12 +232,27 @@ impl<'a> PathTracer<'a> {
         !self.settings.only_last_bounce || depth == self.settings.max_depth.0
     }
 
+    /// True when light samples and scattered rays of a vertex of material `bsdf` share emission by
+    /// multiple importance. Otherwise light samples count it all.
+    pub(super) fn shares_emission(&self, bsdf: &Bsdf) -> bool {
+        match bsdf {
+            Bsdf::Diffuse(_) => self.shares_diffuse_emission(),
+            _ => self.settings.mode == Mode::Best && !self.scene.is_course_compatible(),
+        }
+    }
+
+    /// [`Self::shares_emission`] of diffuse surfaces.
+    pub(super) fn shares_diffuse_emission(&self) -> bool {
+        let is_best = self.settings.mode == Mode::Best && !self.scene.is_course_compatible();
+        is_best && !self.light_samples_suffice
+    }
+
     /// Sends `path` on from `vertex`; false when it ends there.
     pub(super) fn scatter(&self, path: &mut Path, vertex: &Vertex<'_>) -> bool {
         let (bounce, sampler) = (path.bounce, path.sampler);
         let is_last = bounce + 1 >= self.settings.max_depth.0;
         // After the last bounce only emission that no light sample finds is still of use.
-        if is_last && !vertex.bsdf.is_delta() && !self.shares_emission() {
+        if is_last && !vertex.bsdf.is_delta() && !self.shares_emission(vertex.bsdf) {
             return false;
         }
         let u_lobe = sampler.get_1d(bounce, Slot::Lobe);
@@ -255,7 +270,7 @@ impl<'a> PathTracer<'a> {
         path.throughput *= sample.weight();
         path.emission_weight = match sample.lobe {
             Lobe::Delta => EmissionWeight::Full,
-            _ if self.shares_emission() => EmissionWeight::Shared {
+            _ if self.shares_emission(vertex.bsdf) => EmissionWeight::Shared {
                 from: vertex.surface.point,
                 normal: vertex.lit_normal(),
                 scatter_pdf: sample.pdf,

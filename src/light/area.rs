@@ -2,10 +2,12 @@ use std::f32::consts::PI;
 
 use glam::{Vec2, Vec3};
 
-use super::{EmissionBounds, LightHit, LightSample, direction_to, usable_pdf};
+use super::parallelogram::Parallelogram;
+use super::part::{AreaPart, Part, parts_of};
+use super::{EmissionBounds, LightHit, LightSample, LightSampleContext, direction_to, usable_pdf};
 use crate::color::{Rgb, luminance};
 use crate::geometry::Shapes;
-use crate::sampling::{Distribution1d, uniform_triangle};
+use crate::sampling::Distribution1d;
 
 /// Where an area light is.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,64 +49,31 @@ pub struct AreaLight {
     area: f32,
     /// Chooses among `parts` by area; nothing when the whole area is zero.
     by_area: Option<Distribution1d>,
-    /// The triangles or the rectangle, at hand for sampling.
+    /// What is sampled.
     parts: Vec<Part>,
-    /// Primitive and part, by primitive.
-    by_primitive: Vec<(u32, u32)>,
-}
-
-/// A triangle or parallelogram of an area light.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Part {
-    corner: Vec3,
-    edge_1: Vec3,
-    edge_2: Vec3,
-    /// Unit; nothing for a part without area.
-    normal: Option<Vec3>,
-    /// Of one side.
-    area: f32,
-    primitive: u32,
-}
-
-impl Part {
-    /// `share` is that of the parallelogram over the edges: a half for a triangle.
-    fn new([corner, edge_1, edge_2]: [Vec3; 3], share: f32, primitive: u32) -> Self {
-        let across = edge_1.cross(edge_2);
-        Self {
-            corner,
-            edge_1,
-            edge_2,
-            normal: across.try_normalize(),
-            area: share * across.length(),
-            primitive,
-        }
-    }
+    /// Each primitive with its part, by primitive.
+    part_of: Vec<(u32, u32)>,
 }
 
 impl AreaLight {
     /// A light of the given shape that emits `radiance` from its front, or from both sides.
     ///
-    /// The ids of [`AreaShape::Triangles`] must be of triangles of `shapes`. Degenerate triangles
-    /// emit nothing.
+    /// The ids of [`AreaShape::Triangles`] must be of triangles of `shapes`, each at most once.
+    /// Degenerate triangles emit nothing.
     pub fn new(shapes: &Shapes, shape: AreaShape, radiance: Rgb, two_sided: bool) -> Self {
-        let parts: Vec<_> = match &shape {
-            AreaShape::Triangles { primitives } => {
-                let part = |&id: &u32| {
-                    let [p0, p1, p2] = shapes.vertices(id as usize);
-                    Part::new([p0, p1 - p0, p2 - p0], 0.5, id)
-                };
-                primitives.iter().map(part).collect()
-            }
+        let (parts, part_of) = match &shape {
+            AreaShape::Triangles { primitives } => parts_of(shapes, primitives),
             &AreaShape::Rectangle {
                 corner,
                 edge_u,
                 edge_v,
-            } => vec![Part::new([corner, edge_u, edge_v], 1.0, u32::MAX)],
+            } => {
+                let whole = Parallelogram::new(corner, edge_u, edge_v);
+                (whole.map(Part::Parallelogram).into_iter().collect(), vec![])
+            }
         };
-        let areas: Vec<f32> = parts.iter().map(|part| part.area).collect();
+        let areas: Vec<f32> = parts.iter().map(Part::area).collect();
         let usable = areas.iter().filter(|area| area.is_finite());
-        let mut by_primitive: Vec<_> = parts.iter().map(|part| part.primitive).zip(0..).collect();
-        by_primitive.sort_unstable();
         Self {
             shape,
             radiance,
@@ -113,7 +82,7 @@ impl AreaLight {
             area: usable.map(|&area| f64::from(area)).sum::<f64>() as f32,
             by_area: Distribution1d::new(&areas),
             parts,
-            by_primitive,
+            part_of,
         }
     }
 
@@ -143,10 +112,29 @@ impl AreaLight {
         self.density
     }
 
-    /// The triangle that `u` in [0, 1) picks in proportion to area, counted from 0; 0 for a
-    /// rectangle, `None` for a light without area.
+    /// Number of parts that are sampled, those without area included.
+    pub fn part_count(&self) -> usize {
+        self.parts.len()
+    }
+
+    /// Part `index`, below [`Self::part_count`].
+    pub fn part(&self, index: usize) -> AreaPart {
+        self.parts[index].outline()
+    }
+
+    /// The part that `u` in [0, 1) picks in proportion to area; `None` for a light without area.
     pub fn choose_part(&self, u: f32) -> Option<usize> {
         self.by_area.as_ref().map(|parts| parts.sample(u).0)
+    }
+
+    /// The part that `primitive` belongs to, `u32::MAX` being the rectangle that rays do not meet;
+    /// `None` when it is not of this light.
+    pub fn part_of(&self, primitive: u32) -> Option<usize> {
+        if primitive == u32::MAX {
+            return (!self.parts.is_empty()).then_some(0);
+        }
+        let found = self.part_of.binary_search_by_key(&primitive, |pair| pair.0);
+        found.ok().map(|place| self.part_of[place].1 as usize)
     }
 
     /// Total area of one side, in scene units squared.
@@ -154,45 +142,33 @@ impl AreaLight {
         self.area
     }
 
-    /// The number of triangles, or 1 for a rectangle.
-    pub fn part_count(&self) -> usize {
-        self.parts.len()
+    /// Area of one side of part `index`, in scene units squared.
+    pub fn part_area(&self, index: usize) -> f32 {
+        self.parts[index].area()
     }
 
-    /// The part that `primitive` belongs to, as [`Self::choose_part`] counts them; `None` when it
-    /// is not of this light.
-    pub(super) fn part_of(&self, primitive: u32) -> Option<usize> {
-        if let AreaShape::Rectangle { .. } = self.shape {
-            return Some(0);
+    /// Where part `index` is and where it shines; `None` when it has no area.
+    pub(super) fn part_bounds(&self, index: usize) -> Option<EmissionBounds> {
+        let part = &self.parts[index];
+        let intensity = part.area() * luminance(self.radiance);
+        let normal = part.normal()?;
+        match part {
+            Part::Triangle(corners, _) => {
+                EmissionBounds::flat(corners, normal, intensity, self.two_sided)
+            }
+            Part::Parallelogram(whole) => {
+                EmissionBounds::flat(&whole.corners(), normal, intensity, self.two_sided)
+            }
         }
-        let place = (self.by_primitive).binary_search_by_key(&primitive, |entry| entry.0);
-        place.ok().map(|i| self.by_primitive[i].1 as usize)
     }
 
-    /// Area of one side of part `part`, in scene units squared.
-    pub fn part_area(&self, part: usize) -> f32 {
-        self.parts[part].area
-    }
-
-    /// Where part `part` is and where it shines; `None` when it has no area.
-    pub(super) fn part_bounds(&self, part: usize) -> Option<EmissionBounds> {
-        let part = &self.parts[part];
-        let (a, b, c) = (part.corner, part.edge_1, part.edge_2);
-        let far = match self.shape {
-            AreaShape::Triangles { .. } => a,
-            AreaShape::Rectangle { .. } => a + b + c,
-        };
-        let intensity = part.area * luminance(self.radiance);
-        EmissionBounds::flat(
-            &[a, a + b, a + c, far],
-            part.normal?,
-            intensity,
-            self.two_sided,
-        )
-    }
-
-    /// A point of a part that is chosen by area.
-    pub(super) fn sample(&self, from: Vec3, u_choice: f32, u: Vec2) -> Option<LightSample> {
+    /// As [`Self::sample_part`], of a part chosen by area.
+    pub(super) fn sample(
+        &self,
+        from: &LightSampleContext,
+        u_choice: f32,
+        u: Vec2,
+    ) -> Option<LightSample> {
         let (part, pmf, _) = self.by_area.as_ref()?.sample(u_choice);
         let sample = self.sample_part(part, from, u)?;
         Some(LightSample {
@@ -202,45 +178,87 @@ impl AreaLight {
     }
 
     /// The density of [`Self::sample`].
-    pub(super) fn pdf(&self, wi: Vec3, hit: LightHit) -> f32 {
+    pub(super) fn pdf(&self, from: &LightSampleContext, wi: Vec3, hit: LightHit) -> f32 {
         let (Some(part), Some(by_area)) = (self.part_of(hit.primitive), &self.by_area) else {
             return 0.0;
         };
-        by_area.pmf(part) * self.pdf_part(part, wi, hit)
+        by_area.pmf(part) * self.pdf_part(part, from, wi, hit)
     }
 
-    /// A point evenly spread over part `part`.
-    pub(super) fn sample_part(&self, part: usize, from: Vec3, u: Vec2) -> Option<LightSample> {
-        let (point, normal) = self.point_on(part, u)?;
-        let (wi, distance) = direction_to(from, point)?;
-        let hit = LightHit {
-            point,
-            normal,
-            distance,
-            primitive: self.parts[part].primitive,
+    /// A point of part `index`: parallelograms by [`Parallelogram::sample`], triangles evenly by area;
+    /// all by area with [`AreaDensity::Course`].
+    pub(super) fn sample_part(
+        &self,
+        index: usize,
+        from: &LightSampleContext,
+        u: Vec2,
+    ) -> Option<LightSample> {
+        let part = &self.parts[index];
+        let normal = part.normal()?;
+        let warped = self.warped(part);
+        let (point, pdf) = match warped {
+            Some(whole) => whole.sample(from, u)?,
+            None => (part.even_point(u), 1.0),
+        };
+        let (wi, distance) = direction_to(from.point, point)?;
+        let cos = self.emission_cosine(normal, wi);
+        let pdf = match warped {
+            _ if cos.is_nan() || cos <= 0.0 => return None,
+            Some(_) => pdf,
+            None => self.even_pdf(part, distance, cos),
         };
         Some(LightSample {
             wi,
             distance,
             radiance: self.radiance,
-            pdf: usable_pdf(self.pdf_part(part, wi, hit))?,
+            pdf: usable_pdf(pdf)?,
             is_delta: false,
             point,
             normal,
         })
     }
 
-    /// The density of [`Self::sample_part`] for the direction `wi`, which meets the part at
-    /// `hit`.
-    pub(super) fn pdf_part(&self, part: usize, wi: Vec3, hit: LightHit) -> f32 {
-        let (cos, area) = (self.emission_cosine(hit.normal, wi), self.parts[part].area);
-        if !(cos > 0.0 && area > 0.0) {
+    /// The density of [`Self::sample_part`] for the direction `wi`, which meets the part at `hit`.
+    pub(super) fn pdf_part(
+        &self,
+        index: usize,
+        from: &LightSampleContext,
+        wi: Vec3,
+        hit: LightHit,
+    ) -> f32 {
+        let part = &self.parts[index];
+        let cos = self.emission_cosine(hit.normal, wi);
+        if cos.is_nan() || cos <= 0.0 || part.area() <= 0.0 {
             return 0.0;
         }
+        match self.warped(part) {
+            Some(whole) => whole.pdf(from, hit.point),
+            None => self.even_pdf(part, hit.distance, cos),
+        }
+    }
+
+    /// True for a single parallelogram: of several parts one that is near may be chosen rarely.
+    pub(super) fn is_bounded(&self) -> bool {
+        match &self.parts[..] {
+            [only] => self.warped(only).is_some(),
+            _ => false,
+        }
+    }
+
+    /// The parallelogram that is not sampled evenly by area.
+    fn warped<'a>(&self, part: &'a Part) -> Option<&'a Parallelogram> {
+        match (part, self.density) {
+            (Part::Parallelogram(whole), AreaDensity::Correct) => Some(whole),
+            _ => None,
+        }
+    }
+
+    /// Per steradian, for points evenly spread over the area of `part`.
+    fn even_pdf(&self, part: &Part, distance: f32, cos: f32) -> f32 {
         // One factor at a time: the square of a tiny distance would vanish.
-        let per_distance = hit.distance / (area * cos);
+        let per_distance = distance / (part.area() * cos);
         match self.density {
-            AreaDensity::Correct => per_distance * hit.distance,
+            AreaDensity::Correct => per_distance * distance,
             AreaDensity::Course => per_distance,
         }
     }
@@ -262,16 +280,5 @@ impl AreaLight {
     fn emission_cosine(&self, normal: Vec3, wi: Vec3) -> f32 {
         let cos = -normal.dot(wi);
         if self.two_sided { cos.abs() } else { cos }
-    }
-
-    /// Point and unit normal.
-    fn point_on(&self, part: usize, u: Vec2) -> Option<(Vec3, Vec3)> {
-        let part = &self.parts[part];
-        let (b1, b2) = match self.shape {
-            AreaShape::Triangles { .. } => uniform_triangle(u),
-            AreaShape::Rectangle { .. } => (u.x, u.y),
-        };
-        let point = part.corner + b1 * part.edge_1 + b2 * part.edge_2;
-        Some((point, part.normal?))
     }
 }

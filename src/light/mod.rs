@@ -1,10 +1,17 @@
 //! Floor 4: what shines. Lights are sampled by solid angle from a point; all positions are in the
-//! normalised space of the prepared scene, all directions are unit vectors.
+//! normalised space of the prepared scene, all directions are unit vectors. Two triangles that make a
+//! parallelogram are one part of a light, sampled as a whole.
 
 mod area;
 mod bounds;
+mod context;
+mod corner_warp;
+mod cylinder_warp;
 mod directional;
 mod environment;
+mod merge;
+mod parallelogram;
+mod part;
 mod point;
 mod sampler;
 mod sphere;
@@ -19,8 +26,12 @@ use crate::color::Rgb;
 use crate::geometry::Shapes;
 
 pub use area::{AreaDensity, AreaLight, AreaShape};
+pub use context::LightSampleContext;
+pub(crate) use cylinder_warp::LEVEL;
 pub use directional::DirectionalLight;
 pub use environment::{EnvironmentLight, EnvironmentPart};
+pub(crate) use parallelogram::NEAR;
+pub use part::AreaPart;
 pub use point::{PointFalloff, PointLight};
 pub use sampler::{LightChoice, LightGroup, LightSampler};
 pub use sphere::SphereLight;
@@ -90,7 +101,8 @@ impl LightHit {
 }
 
 impl Light {
-    /// A direction from `from` to the light, distributed so that bright parts are found often.
+    /// A direction from `from` to the light, distributed so that bright parts are found often, and, where
+    /// `from` has a normal, those that are bright on its side.
     ///
     /// `u_choice` picks a part of the light, `u` the place, all in [0, 1). `None` when the chosen
     /// place sends no light to `from` or the density is not finite and above 0; such a sample counts
@@ -98,29 +110,29 @@ impl Light {
     pub fn sample(
         &self,
         shapes: &Shapes,
-        from: Vec3,
+        from: &LightSampleContext,
         u_choice: f32,
         u: Vec2,
     ) -> Option<LightSample> {
         match self {
             Self::Area(area) => area.sample(from, u_choice, u),
-            Self::Sphere(sphere) => sphere.sample(shapes, from, u),
-            Self::Point(point) => point.sample(from),
-            Self::Spot(spot) => spot.sample(from),
+            Self::Sphere(sphere) => sphere.sample(shapes, from.point, u),
+            Self::Point(point) => point.sample(from.point),
+            Self::Spot(spot) => spot.sample(from.point),
             Self::Directional(directional) => Some(directional.sample()),
             Self::Environment(environment) => environment.sample(u_choice, u),
         }
     }
 
-    /// The density per steradian with which [`Self::sample`] makes `wi` from `from`; 0 for delta
-    /// lights.
+    /// The density per steradian with which [`Self::sample`] makes `wi` from `from`, the same normal
+    /// given; 0 for delta lights.
     ///
     /// `hit` is where the ray along `wi` meets this light, [`LightHit::INFINITE`] for the
     /// environment.
-    pub fn pdf(&self, shapes: &Shapes, from: Vec3, wi: Vec3, hit: LightHit) -> f32 {
+    pub fn pdf(&self, shapes: &Shapes, from: &LightSampleContext, wi: Vec3, hit: LightHit) -> f32 {
         match self {
-            Self::Area(area) => area.pdf(wi, hit),
-            Self::Sphere(sphere) => sphere.pdf(shapes, from, wi, hit),
+            Self::Area(area) => area.pdf(from, wi, hit),
+            Self::Sphere(sphere) => sphere.pdf(shapes, from.point, wi, hit),
             Self::Environment(environment) => environment.pdf(wi),
             Self::Point(_) | Self::Spot(_) | Self::Directional(_) => 0.0,
         }
@@ -149,7 +161,7 @@ impl Light {
         &self,
         shapes: &Shapes,
         part: usize,
-        from: Vec3,
+        from: &LightSampleContext,
         (u_choice, u): (f32, Vec2),
     ) -> Option<LightSample> {
         match self {
@@ -163,11 +175,11 @@ impl Light {
         &self,
         shapes: &Shapes,
         part: usize,
-        from: Vec3,
+        from: &LightSampleContext,
         (wi, hit): (Vec3, LightHit),
     ) -> f32 {
         match self {
-            Self::Area(area) => area.pdf_part(part, wi, hit),
+            Self::Area(area) => area.pdf_part(part, from, wi, hit),
             _ => self.pdf(shapes, from, wi, hit),
         }
     }
@@ -216,6 +228,15 @@ impl Light {
             Self::Spot(spot) => spot.power(),
             Self::Directional(directional) => directional.power(scene_radius),
             Self::Environment(environment) => environment.power(scene_radius),
+        }
+    }
+
+    /// True when no sample counts for more than a few times the radiance, however near the light is and
+    /// however it lies, so that a diffuse surface needs no other strategy to find it.
+    pub fn is_bounded(&self) -> bool {
+        match self {
+            Self::Area(area) => area.is_bounded(),
+            _ => false,
         }
     }
 

@@ -1,6 +1,6 @@
 use glam::Vec3;
 
-use super::{Light, LightTree};
+use super::{Light, LightTree, Link};
 use crate::geometry::Shapes;
 use crate::sampling::Distribution1d;
 
@@ -76,6 +76,14 @@ impl LightSampler {
             tree,
             parts,
             first,
+        }
+    }
+
+    /// The light that is always chosen, if there is only one part to choose from.
+    pub fn only_light(&self) -> Option<u32> {
+        match (self.tree.root(), &self.infinite[..]) {
+            (Some(Link::Part(part)), []) => Some(self.parts[part].0),
+            _ => None,
         }
     }
 

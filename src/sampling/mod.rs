@@ -1,6 +1,7 @@
 //! Floor 1: random numbers as pure functions, warps with their densities, discrete and tabulated
 //! distributions, multiple-importance weights.
 
+mod bilinear;
 mod digital_net;
 mod distribution_1d;
 mod distribution_2d;
@@ -10,6 +11,7 @@ mod path_sampler;
 mod scramble;
 mod warp;
 
+pub use bilinear::Bilinear;
 pub use distribution_1d::Distribution1d;
 pub use distribution_2d::Distribution2d;
 pub use heuristic::power_heuristic;

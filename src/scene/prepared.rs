@@ -9,7 +9,7 @@ use super::shared_mesh::SharedMesh;
 use crate::bsdf::Bsdf;
 use crate::color::Rgb;
 use crate::geometry::{Aggregate, Instance, InstanceStats, Shapes};
-use crate::light::{Light, LightHit, LightSampler};
+use crate::light::{Light, LightHit, LightSampleContext, LightSampler};
 use crate::math::Normalization;
 
 /// Index of the flat triangles in [`Tables::smooth`].
@@ -237,7 +237,11 @@ impl PreparedScene {
             return 0.0;
         }
         let hit = light_hit(surface, distance);
-        pmf * light.pdf_part(self.shapes(), part, from, (direction, hit))
+        let from = LightSampleContext {
+            point: from,
+            normal,
+        };
+        pmf * light.pdf_part(self.shapes(), part, &from, (direction, hit))
     }
 
     /// The same for the environment.
@@ -250,7 +254,12 @@ impl PreparedScene {
             return 0.0;
         }
         let light = self.light(index);
-        pmf * light.pdf(self.shapes(), from, direction, LightHit::INFINITE)
+        pmf * light.pdf(
+            self.shapes(),
+            &LightSampleContext::all_around(from),
+            direction,
+            LightHit::INFINITE,
+        )
     }
 
     /// Light number `light`.
@@ -276,6 +285,15 @@ impl PreparedScene {
     /// Chooses among the parts of all lights; nothing in course-compatible scenes.
     pub fn light_sampler(&self) -> &LightSampler {
         &self.tables.sampler
+    }
+
+    /// True when a diffuse surface needs light samples only: there is no sky, and no light can be met
+    /// by rays, or only one of one part of which a sample counts for something bounded.
+    pub fn light_samples_suffice(&self) -> bool {
+        let only = self.light_sampler().only_light();
+        self.tables.environment.is_none()
+            && (self.tables.lights.iter().all(Light::is_delta)
+                || only.is_some_and(|light| self.light(light).is_bounded()))
     }
 
     /// The number of lights that uniform hemisphere directions stand in for, at least 1.

@@ -5,7 +5,8 @@ use softbox::color::Rgb;
 use softbox::geometry::{Shapes, Sphere};
 use softbox::image::Image;
 use softbox::light::{
-    AreaDensity, AreaLight, AreaShape, EnvironmentLight, Light, LightHit, SphereLight,
+    AreaDensity, AreaLight, AreaShape, EnvironmentLight, Light, LightHit, LightSampleContext,
+    SphereLight,
 };
 
 use crate::directions::Directions;
@@ -76,29 +77,57 @@ fn hit(o: DVec3, d: DVec3, t: f64, normal: DVec3, primitive: u32) -> LightHit {
 }
 
 /// A light seen from `from`; `radius` is its size in radians about `axis`.
-fn case(name: &str, shapes: Shapes, light: Light, from: Vec3, (axis, radius): (Vec3, f64)) -> Case {
+fn case(name: &str, shapes: Shapes, light: Light, from: Vec3, view: (Vec3, f64)) -> Case {
+    lit_case(
+        name,
+        shapes,
+        light,
+        LightSampleContext::all_around(from),
+        view,
+    )
+}
+
+/// The same for a surface.
+fn lit_case(
+    name: &str,
+    shapes: Shapes,
+    light: Light,
+    from: LightSampleContext,
+    (axis, radius): (Vec3, f64),
+) -> Case {
     let directions = Directions::around(axis, radius);
     let scene = Arc::new((shapes, light));
     let same = Arc::clone(&scene);
     let total = move |scene: &(Shapes, Light), wi: Vec3| -> f64 {
-        hits(&scene.0, &scene.1, from, wi)
+        hits(&scene.0, &scene.1, from.point, wi)
             .into_iter()
-            .map(|hit| f64::from(scene.1.pdf(&scene.0, from, wi, hit)))
+            .map(|hit| f64::from(scene.1.pdf(&scene.0, &from, wi, hit)))
             .sum()
     };
     Case {
         name: name.to_owned(),
         sample: Box::new(move |numbers| {
             let (shapes, light) = &*scene;
-            let s = light.sample(shapes, from, numbers.choice, numbers.u)?;
-            let hit = LightHit {
-                point: s.point,
-                normal: s.normal,
-                distance: s.distance,
-                primitive: 0,
+            let s = light.sample(shapes, &from, numbers.choice, numbers.u)?;
+            let off = |hit: &LightHit| {
+                if hit.distance.is_finite() {
+                    hit.point.distance(s.point) / s.distance
+                } else {
+                    0.0
+                }
             };
-            let queried = light.pdf(shapes, from, s.wi, hit);
-            assert!((s.pdf / queried - 1.0).abs() < 1e-4, "{light:?} {from}");
+            // Rounding may take the very edge off the light.
+            let met = hits(shapes, light, from.point, s.wi)
+                .into_iter()
+                .filter(|hit| off(hit) < 1e-5)
+                .min_by(|a, b| off(a).total_cmp(&off(b)));
+            if let Some(hit) = met {
+                let queried = light.pdf(shapes, &from, s.wi, hit);
+                assert!(
+                    (s.pdf / queried - 1.0).abs() < 2e-4,
+                    "{light:?} {from:?} {s:?} {queried}"
+                );
+            }
             Some(directions.place(s.wi))
         }),
         density: Box::new(move |place| directions.density(place, |wi| total(&same, wi))),
@@ -160,6 +189,55 @@ fn sphere(two_sided: bool) -> (Shapes, Light) {
     (shapes, Light::Sphere(light))
 }
 
+/// Two triangles that are one parallelogram.
+fn pair() -> (Shapes, Light) {
+    let shapes = Shapes {
+        positions: vec![
+            Vec3::new(-0.4, 1.0, -0.3),
+            Vec3::new(0.4, 1.0, -0.3),
+            Vec3::new(0.5, 1.0, 0.3),
+            Vec3::new(-0.3, 1.0, 0.3),
+        ],
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+        spheres: vec![],
+    };
+    let shape = AreaShape::Triangles {
+        primitives: vec![0, 1],
+    };
+    let light = AreaLight::new(&shapes, shape, Rgb::ONE, false);
+    (shapes, Light::Area(light))
+}
+
+/// Near and far, under the light and beside it, whole and partly below the horizon.
+fn parallelogram_cases() -> Vec<Case> {
+    let places = [
+        ("below", Vec3::new(0.1, -0.2, 0.05), 0.5),
+        ("aslant", Vec3::new(3.0, 0.7, 0.2), 0.15),
+        ("under it", Vec3::new(0.1, 0.9, 0.05), 2.0),
+        ("almost on it", Vec3::new(0.1, 0.999, 0.05), 3.0),
+        ("under its edge", Vec3::new(0.45, 0.7, 0.1), 1.0),
+        ("near its edge", Vec3::new(0.6, 0.97, 0.1), 0.8),
+        ("beside its first edge", Vec3::new(0.1, 0.97, 0.33), 0.8),
+    ];
+    let normals = [
+        ("all around", Vec3::ZERO),
+        ("upright", Vec3::Y),
+        ("turned", Vec3::new(-0.8, 0.36, 0.48)),
+        ("away", Vec3::new(0.8, 0.6, 0.0)),
+    ];
+    let mut cases = vec![];
+    for (place, point, size) in places {
+        for (facing, normal) in normals {
+            let (shapes, light) = pair();
+            let name = format!("pair of triangles {place} {facing}");
+            let from = LightSampleContext { point, normal };
+            let view = (Vec3::new(0.05, 1.0, 0.0) - point, size);
+            cases.push(lit_case(&name, shapes, light, from, view));
+        }
+    }
+    cases
+}
+
 pub(crate) fn surface_cases() -> Vec<Case> {
     let none = Shapes::default;
     let mut cases = vec![];
@@ -167,7 +245,7 @@ pub(crate) fn surface_cases() -> Vec<Case> {
         ("below", Vec3::new(0.1, 0.0, 0.05), 0.5),
         ("near", Vec3::new(0.1, 0.9, 0.05), 2.0),
         ("aslant", Vec3::new(3.0, 0.7, 0.2), 0.15),
-        ("afar", Vec3::new(5.0, -30.0, 9.0), 0.02),
+        ("afar", Vec3::new(2.5, -15.0, 4.5), 0.04),
     ] {
         let view = (Vec3::Y - from, size);
         let light = rectangle(AreaDensity::Correct, false);
@@ -179,6 +257,7 @@ pub(crate) fn surface_cases() -> Vec<Case> {
             view,
         ));
     }
+    cases.extend(parallelogram_cases());
     let above = Vec3::new(0.5, 1.6, 0.1);
     let light = rectangle(AreaDensity::Correct, true);
     cases.push(case(

@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec2, Vec3};
 use softbox::color::Rgb;
 use softbox::geometry::{Shapes, Sphere};
-use softbox::light::{AreaLight, AreaShape, Light, SphereLight};
+use softbox::light::{AreaLight, AreaShape, Light, LightSampleContext, SphereLight};
 use softbox::sampling::{PathSampler, Slot, uniform_sphere};
 
 /// The mean of 1/pdf over an even grid of random numbers: the solid angle that is sampled.
@@ -13,7 +13,7 @@ fn sampled_solid_angle(shapes: &Shapes, light: &Light) -> f64 {
     for i in 0..n {
         for j in 0..n {
             let u = Vec2::new(f32::from(i) + 0.5, f32::from(j) + 0.5) / f32::from(n);
-            let sample = light.sample(shapes, Vec3::ZERO, 0.5, u);
+            let sample = light.sample(shapes, &LightSampleContext::all_around(Vec3::ZERO), 0.5, u);
             sum += sample.map_or(0.0, |s| 1.0 / f64::from(s.pdf));
         }
     }

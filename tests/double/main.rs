@@ -97,7 +97,7 @@ fn every_setting_is_honoured() {
         ..SETTINGS
     });
     for settings in by_depth {
-        compare(&view, settings, 4).check(&settings.max_depth.to_string());
+        compare(&view, settings, 16).check(&settings.max_depth.to_string());
     }
     for mode in Mode::ALL {
         let settings = PathSettings {

@@ -148,7 +148,7 @@ fn replicate_means(tracer: &PathTracer<'_>, ids: &[PathId], length: usize) -> Es
     assert_eq!(counts.invalid_samples, 0);
     let mut estimate = Estimate::default();
     for samples in radiance.chunks_exact(length) {
-        let sum: glam::DVec3 = samples.iter().map(|r| r.as_dvec3()).sum();
+        let sum: DVec3 = samples.iter().map(|r| r.as_dvec3()).sum();
         estimate.add((sum / length as f64).to_array());
     }
     estimate

@@ -18,7 +18,8 @@ const SHADOW_END: f64 = 1.0 - 1e-12;
 /// The light that arrives at `vertex` straight from lights, times the throughput: the sum of the
 /// samples of the plan.
 pub(super) fn direct_light(tracer: &PathTracer<'_>, path: &Path, vertex: &Vertex<'_>) -> DVec3 {
-    let (scene, from) = (tracer.scene, vertex.surface.point);
+    let scene = tracer.scene;
+    let from = (vertex.surface.point, vertex.lit_normal());
     let samples = tracer.plan.samples.iter().zip(0..);
     let sum = samples.map(|(sample, number)| match *sample {
         DirectSample::Light { light, weight } => {
@@ -50,7 +51,7 @@ fn any_light(
     let place = (vertex.surface.point, vertex.lit_normal());
     let (index, part, pmf) = light_choice::choose(scene.light_sampler(), place, u)?;
     let numbers = light_numbers(path.sampler, path.bounce, number);
-    let sample = light::sample_part(scene.light(index), scene.shapes(), part, place.0, numbers)?;
+    let sample = light::sample_part(scene.light(index), scene.shapes(), part, place, numbers)?;
     Some(light::LightSample {
         pdf: pmf * sample.pdf,
         ..sample
@@ -64,6 +65,7 @@ fn lit_by(
     sample: Option<light::LightSample>,
 ) -> DVec3 {
     let scene = tracer.scene;
+    let shares = tracer.shares_emission(vertex.bsdf);
     let Some(sample) = sample else {
         return DVec3::ZERO;
     };
@@ -72,7 +74,7 @@ fn lit_by(
     };
     let (value, scatter_pdf) = bsdf::eval_and_pdf(vertex.bsdf, vertex.wo, wi);
     let mut light = value * wi.z.abs() * sample.radiance / sample.pdf;
-    if tracer.shares_emission() && !sample.is_delta {
+    if shares && !sample.is_delta {
         let n = f64::from(tracer.settings.light_samples);
         light *= warp::power_heuristic(n * sample.pdf, scatter_pdf);
     }

@@ -2,9 +2,10 @@
 
 use glam::{DVec3, Vec2};
 
-use super::{environment, sphere_light, warp};
+use super::surface::Surface;
+use super::{area_light, environment, sphere_light};
 use crate::geometry::Shapes;
-use crate::light::{AreaDensity, AreaLight, AreaShape, Light, PointFalloff, SpotLight};
+use crate::light::{Light, PointFalloff, SpotLight};
 
 /// A direction in which a light is seen.
 #[derive(Clone, Copy, Debug)]
@@ -20,18 +21,19 @@ pub(super) struct LightSample {
     pub(super) end: Option<(DVec3, DVec3)>,
 }
 
-/// A direction from `from` to `light`; `None` where it sends nothing there.
+/// A direction from `from` to `light`, of use on the side of `normal`; `None` where it sends nothing
+/// there.
 pub(super) fn sample(
     light: &Light,
     shapes: &Shapes,
-    from: DVec3,
+    (from, normal): (DVec3, DVec3),
     u_choice: f32,
     u: Vec2,
 ) -> Option<LightSample> {
     match light {
         Light::Area(area) => {
             let part = area.choose_part(u_choice)?;
-            let sample = sample_area(area, shapes, part, from, u)?;
+            let sample = area_light::sample(area, part, (from, normal), u)?;
             // By area over all parts.
             let share = f64::from(area.part_area(part)) / f64::from(area.area());
             Some(LightSample {
@@ -68,34 +70,33 @@ pub(super) fn sample(
     }
 }
 
-/// A direction from `from` to part `part` of `light`, with the numbers (inside the light, place).
+/// As [`sample`], from part `part` of `light`, with the numbers (inside the light, place).
 pub(super) fn sample_part(
     light: &Light,
     shapes: &Shapes,
     part: usize,
-    from: DVec3,
+    place: (DVec3, DVec3),
     (u_choice, u): (f32, Vec2),
 ) -> Option<LightSample> {
     match light {
-        Light::Area(area) => sample_area(area, shapes, part, from, u),
-        _ => sample(light, shapes, from, u_choice, u),
+        Light::Area(area) => area_light::sample(area, part, place, u),
+        _ => sample(light, shapes, place, u_choice, u),
     }
 }
 
-/// The density of [`sample_part`] for the direction from `from` that meets the surface of the part
-/// at `point`, whose normal is `normal`, on a side that emits.
+/// The density of [`sample_part`] for the direction from `from`, lit on the side of `normal`, in
+/// which it meets `surface`, which is on the part, on a side that emits.
 pub(super) fn pdf_part(
     light: &Light,
     shapes: &Shapes,
     part: usize,
-    from: DVec3,
-    (point, normal): (DVec3, DVec3),
+    (from, normal): (DVec3, DVec3),
+    surface: &Surface,
 ) -> f64 {
     match light {
         Light::Area(area) => {
-            let to_light = point - from;
-            let cos = normal.dot(to_light.normalize());
-            area_pdf(area, part, to_light.length(), cos)
+            let end = (surface.point, surface.geometric_normal);
+            area_light::pdf(area, part, (from, normal), end)
         }
         Light::Sphere(sphere) => shapes
             .sphere(sphere.primitive)
@@ -118,61 +119,6 @@ pub(super) fn emitted(light: &Light, normal: DVec3, wi: DVec3) -> DVec3 {
     } else {
         DVec3::ZERO
     }
-}
-
-fn sample_area(
-    area: &AreaLight,
-    shapes: &Shapes,
-    part: usize,
-    from: DVec3,
-    u: Vec2,
-) -> Option<LightSample> {
-    let u = u.as_dvec2();
-    let (corner, edge_1, edge_2, (b1, b2)) = match area.shape() {
-        AreaShape::Triangles { primitives } => {
-            let [a, b, c] = shapes
-                .vertices(primitives[part] as usize)
-                .map(|v| v.as_dvec3());
-            (a, b - a, c - a, warp::triangle(u))
-        }
-        AreaShape::Rectangle {
-            corner,
-            edge_u,
-            edge_v,
-        } => {
-            let [a, e1, e2] = [corner, edge_u, edge_v].map(|v| v.as_dvec3());
-            (a, e1, e2, (u.x, u.y))
-        }
-    };
-    let point = corner + edge_1 * b1 + edge_2 * b2;
-    let normal = edge_1.cross(edge_2).normalize();
-    let to_light = point - from;
-    let wi = to_light.normalize();
-    let pdf = area_pdf(area, part, to_light.length(), normal.dot(wi));
-    (pdf > 0.0).then(|| LightSample {
-        wi,
-        radiance: area.radiance().as_dvec3(),
-        pdf,
-        is_delta: false,
-        end: Some((point, normal)),
-    })
-}
-
-/// 1 / A per area is r² / (A cos θ) per steradian; `cos_wi` is that of the direction to the light.
-fn area_pdf(area: &AreaLight, part: usize, distance: f64, cos_wi: f64) -> f64 {
-    let cos = if area.is_two_sided() {
-        cos_wi.abs()
-    } else {
-        -cos_wi
-    };
-    if cos <= 0.0 {
-        return 0.0;
-    }
-    let falloff = match area.density() {
-        AreaDensity::Correct => distance * distance,
-        AreaDensity::Course => distance,
-    };
-    falloff / (f64::from(area.part_area(part)) * cos)
 }
 
 /// `irradiance` depends on the direction to the light and its squared distance.

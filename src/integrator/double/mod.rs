@@ -9,6 +9,7 @@
 //! Paths differ where rounding decides: at edges, at the rim of a shadow, at total reflection.
 //! They drift apart where light bounces between curved mirrors, which magnify every error.
 
+mod area_light;
 mod bsdf;
 mod delta;
 mod direct;

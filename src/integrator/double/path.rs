@@ -152,13 +152,12 @@ fn meet_light(tracer: &PathTracer<'_>, path: &mut Path, surface: &Surface) {
         return;
     };
     let met = scene.light(index);
-    let place = (surface.point, surface.geometric_normal);
-    let emitted = light::emitted(met, place.1, path.ray.direction);
+    let emitted = light::emitted(met, surface.geometric_normal, path.ray.direction);
     let part = met.part_of(surface.primitive);
     add_emission(tracer, path, emitted, |from| {
         part.map_or(0.0, |part| {
             light_choice::pmf(scene.light_sampler(), from, index, part)
-                * light::pdf_part(met, scene.shapes(), part, from.0, place)
+                * light::pdf_part(met, scene.shapes(), part, from, surface)
         })
     });
 }
@@ -197,7 +196,7 @@ fn scatter(tracer: &PathTracer<'_>, path: &mut Path, vertex: &Vertex<'_>) -> boo
             (wi, weight)
         }
         Scattered::Smooth { wi, value, pdf } => {
-            path.previous = if tracer.shares_emission() {
+            path.previous = if tracer.shares_emission(vertex.bsdf) {
                 Previous::Shared {
                     from: vertex.surface.point,
                     normal: vertex.lit_normal(),

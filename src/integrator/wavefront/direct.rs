@@ -3,7 +3,7 @@ use std::f32::consts::FRAC_1_PI;
 use glam::Vec3;
 
 use super::shade::{Group, Shade};
-use crate::light::LightSample;
+use crate::light::{LightSample, LightSampleContext};
 use crate::math::{
     LANES, Lanes, Ray, SHADOW_T_MAX, Vec3Array, Vec3Lanes, gamma, offset_origin_lanes,
 };
@@ -90,9 +90,12 @@ impl Shade<'_, '_> {
         let mut samples = LightSamples::NONE;
         for lane in (0..LANES).filter(|lane| lanes >> lane & 1 == 1) {
             let id = self.paths.states[first + lane].id as usize;
-            let from = (points.get(lane), normals.get(lane));
+            let from = LightSampleContext {
+                point: points.get(lane),
+                normal: normals.get(lane),
+            };
             let numbers = (self.samplers[id], self.bounce);
-            if let Some((sample, weight)) = self.tracer.light_sample(numbers, from, number) {
+            if let Some((sample, weight)) = self.tracer.light_sample(numbers, &from, number) {
                 samples.set(lane, &sample, weight);
             }
         }
@@ -117,7 +120,7 @@ impl Shade<'_, '_> {
             .scale(L::load(&samples.factor));
         let black = contribution.x.eq(zero) & contribution.y.eq(zero) & contribution.z.eq(zero);
         let bits = bits & !L::bits(black);
-        if self.tracer.shares_emission() {
+        if self.tracer.shares_diffuse_emission() {
             let n = L::splat(self.tracer.settings.light_samples as f32);
             let share = power_heuristic(n * L::load(&samples.pdf), z.abs() * L::splat(FRAC_1_PI));
             let shared = contribution.scale(share);

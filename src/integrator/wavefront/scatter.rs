@@ -12,7 +12,7 @@ impl Shade<'_, '_> {
     /// Sends the paths of a group on, as [`super::PathTracer::scatter`] does from diffuse surfaces.
     #[inline(always)]
     pub(super) fn scatter<L: Lanes>(&mut self, group: &Group<L>) {
-        let shares_emission = self.tracer.shares_emission();
+        let shares_emission = self.tracer.shares_diffuse_emission();
         if self.bounce + 1 >= self.tracer.settings.max_depth.0 && !shares_emission {
             return;
         }

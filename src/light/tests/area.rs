@@ -2,7 +2,7 @@ use std::f32::consts::PI;
 
 use glam::{Vec2, Vec3};
 
-use super::{irradiance, random, square, square_of_triangles};
+use super::{irradiance, random, seen_from, square, square_of_triangles};
 use crate::color::Rgb;
 use crate::geometry::Shapes;
 use crate::light::{AreaDensity, AreaLight, Light, LightHit};
@@ -18,7 +18,7 @@ fn a_square_over_a_plane_gives_the_polygon_formula() {
         assert!((light.power(&shapes, 9.0) - PI).abs() < 1e-5);
         assert!(
             light
-                .sample(&shapes, Vec3::Y * 2.0, 0.3, Vec2::splat(0.3))
+                .sample(&shapes, &seen_from(Vec3::Y * 2.0), 0.3, Vec2::splat(0.3))
                 .is_none()
         );
         assert_eq!(
@@ -48,18 +48,17 @@ fn a_square_over_a_plane_gives_the_polygon_formula() {
 #[test]
 fn the_course_density_lacks_one_factor_of_the_distance() {
     let none = Shapes::default();
-    let right = AreaLight::new(&none, square(), Rgb::ONE, false);
-    let wrong = Light::Area(right.clone().with_density(AreaDensity::Course));
-    let right = Light::Area(right);
+    let even = AreaLight::new(&none, square(), Rgb::ONE, false).with_density(AreaDensity::Course);
+    let light = Light::Area(even);
     let from = Vec3::new(0.7, -2.0, 0.1);
     for i in 0..100 {
         let (choice, u) = random(i);
-        let r = right
-            .sample(&none, from, choice, u)
+        let s = light
+            .sample(&none, &seen_from(from), choice, u)
             .expect("below the light");
-        let w = wrong
-            .sample(&none, from, choice, u)
-            .expect("below the light");
-        assert!((r.pdf / w.pdf / r.distance - 1.0).abs() < 1e-5);
+        let cos = s.normal.dot(-s.wi);
+        let correct = s.distance * s.distance / cos;
+        assert!((correct / s.pdf / s.distance - 1.0).abs() < 1e-5);
+        assert_eq!(s.point, Vec3::new(u.x - 0.5, 1.0, u.y - 0.5));
     }
 }

@@ -1,6 +1,6 @@
 use glam::Vec3;
 
-use super::{ball, corners, square, square_of_triangles};
+use super::{ball, corners, seen_from, square, square_of_triangles};
 use crate::color::Rgb;
 use crate::light::{AreaLight, AreaShape, Light, LightSampler};
 
@@ -39,7 +39,7 @@ fn degenerate_placements_give_usable_samples_or_none() {
     for (light, shapes) in lights {
         for from in places {
             for u in corners() {
-                let Some(s) = light.sample(shapes, from, u.x, u) else {
+                let Some(s) = light.sample(shapes, &seen_from(from), u.x, u) else {
                     continue;
                 };
                 assert!(s.pdf > 0.0 && s.pdf.is_finite() && s.distance > 0.0);

@@ -3,7 +3,7 @@ use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
 
-use super::{corners, irradiance, random};
+use super::{corners, irradiance, random, seen_from};
 use crate::color::{Rgb, luminance};
 use crate::geometry::Shapes;
 use crate::image::Image;
@@ -62,7 +62,7 @@ fn constant_environments_give_their_irradiance() {
     let black = Light::Environment(EnvironmentLight::new(Rgb::ZERO, Rgb::ZERO, None));
     assert!(
         black
-            .sample(&none, Vec3::ZERO, 0.5, Vec2::splat(0.5))
+            .sample(&none, &seen_from(Vec3::ZERO), 0.5, Vec2::splat(0.5))
             .is_none()
     );
     assert_eq!((black.power(&none, 1.0), black.is_infinite()), (0.0, true));
@@ -76,7 +76,7 @@ fn the_picture_is_its_own_density() {
     let flux = light.power(&none, 1.0) / PI;
     let every_number = (0..20_000).map(random).chain(corners().map(|u| (u.x, u)));
     for (choice, u) in every_number {
-        let Some(s) = light.sample(&none, Vec3::ZERO, choice, u) else {
+        let Some(s) = light.sample(&none, &seen_from(Vec3::ZERO), choice, u) else {
             continue;
         };
         assert!((s.wi.length() - 1.0).abs() < 1e-6);

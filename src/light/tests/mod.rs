@@ -3,16 +3,22 @@
 mod area;
 mod degenerate;
 mod environment;
+mod merge;
+mod parallelogram;
 mod points;
 mod sampler;
 mod sphere;
 
 use glam::{Vec2, Vec3};
 
-use super::{AreaShape, Light, SphereLight};
+use super::{AreaShape, Light, LightSampleContext, SphereLight};
 use crate::color::Rgb;
 use crate::geometry::{Shapes, Sphere};
 use crate::sampling::{ONE_MINUS_EPSILON, PathSampler, Slot};
+
+fn seen_from(point: Vec3) -> LightSampleContext {
+    LightSampleContext::all_around(point)
+}
 
 fn random(i: u32) -> (f32, Vec2) {
     let numbers = PathSampler::new(21, [i, 0], 0);
@@ -70,7 +76,7 @@ fn irradiance(light: &Light, shapes: &Shapes, from: Vec3, normal: Vec3) -> f64 {
         let (i, j) = (k % u32::from(n), k / u32::from(n));
         let u = Vec2::new(i as f32 + 0.5, j as f32 + 0.5) / f32::from(n);
         let choice = (k as f32 * 0.618_034).fract();
-        if let Some(s) = light.sample(shapes, from, choice, u) {
+        if let Some(s) = light.sample(shapes, &seen_from(from), choice, u) {
             sum += f64::from(s.radiance.x * normal.dot(s.wi).max(0.0) / s.pdf);
         }
     }

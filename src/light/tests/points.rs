@@ -2,6 +2,7 @@ use std::f32::consts::PI;
 
 use glam::{Vec2, Vec3};
 
+use super::seen_from;
 use crate::color::Rgb;
 use crate::geometry::Shapes;
 use crate::light::{DirectionalLight, Light, PointFalloff, PointLight, SpotLight};
@@ -17,7 +18,7 @@ fn point_spot_and_directional_lights_are_exact() {
         falloff: PointFalloff::Correct,
     });
     let s = point
-        .sample(&none, Vec3::ZERO, 0.0, Vec2::ZERO)
+        .sample(&none, &seen_from(Vec3::ZERO), 0.0, Vec2::ZERO)
         .expect("lit");
     assert_eq!(
         (s.radiance, s.wi, s.distance, s.pdf),
@@ -26,7 +27,7 @@ fn point_spot_and_directional_lights_are_exact() {
     assert!(s.is_delta && point.is_delta() && !point.is_infinite());
     assert!(
         point
-            .sample(&none, Vec3::Y * 2.0, 0.0, Vec2::ZERO)
+            .sample(&none, &seen_from(Vec3::Y * 2.0), 0.0, Vec2::ZERO)
             .is_none()
     );
 
@@ -37,7 +38,7 @@ fn point_spot_and_directional_lights_are_exact() {
         cos_half_angle: 0.8,
         exponent: 2.0,
     };
-    let at = |x: f32| Light::Spot(spot).sample(&none, Vec3::X * x, 0.0, Vec2::ZERO);
+    let at = |x: f32| Light::Spot(spot).sample(&none, &seen_from(Vec3::X * x), 0.0, Vec2::ZERO);
     let s = at(1.0).expect("inside the cone");
     assert!(
         (s.radiance - intensity * 0.8 / 5.0).length() < 1e-6,
@@ -59,7 +60,9 @@ fn point_spot_and_directional_lights_are_exact() {
         to_light: Vec3::X,
         irradiance: intensity,
     });
-    let s = sun.sample(&none, Vec3::ONE, 0.0, Vec2::ZERO).expect("lit");
+    let s = sun
+        .sample(&none, &seen_from(Vec3::ONE), 0.0, Vec2::ZERO)
+        .expect("lit");
     assert_eq!(
         (s.radiance, s.wi, s.distance),
         (intensity, Vec3::X, f32::INFINITY)

@@ -2,7 +2,7 @@ use std::f32::consts::PI;
 
 use glam::{Vec2, Vec3};
 
-use super::{ball, irradiance, random};
+use super::{ball, irradiance, random, seen_from};
 
 /// C7 of the closed forms: E = π (r/d)² cos θ, near and far.
 #[test]
@@ -35,7 +35,7 @@ fn sphere_samples_lie_on_the_sphere_and_on_the_ray() {
             let (choice, u) = random(i);
             let from = Vec3::new(0.3, -0.2, 0.0);
             let s = light
-                .sample(&shapes, from, choice, u)
+                .sample(&shapes, &seen_from(from), choice, u)
                 .expect("seen from outside");
             let on_ray = from + s.wi * s.distance;
             assert!(
@@ -52,13 +52,16 @@ fn inside_a_sphere_light_there_is_light_only_if_it_is_two_sided() {
     let (shapes, dark) = ball(Vec3::ZERO, 2.0, false);
     let (_, lit) = ball(Vec3::ZERO, 2.0, true);
     let from = Vec3::new(0.5, 1.0, -0.7);
-    assert!(dark.sample(&shapes, from, 0.5, Vec2::splat(0.4)).is_none());
+    assert!(
+        dark.sample(&shapes, &seen_from(from), 0.5, Vec2::splat(0.4))
+            .is_none()
+    );
     let e = irradiance(&lit, &shapes, from, Vec3::Y);
     assert!((e / f64::from(PI) - 1.0).abs() < 1e-3, "{e}");
     for i in 0..1000 {
         let (choice, u) = random(i);
         let s = lit
-            .sample(&shapes, from, choice, u)
+            .sample(&shapes, &seen_from(from), choice, u)
             .expect("lit everywhere");
         assert!((s.point.length() - 2.0).abs() < 1e-5);
         assert!((from + s.wi * s.distance - s.point).length() < 1e-5);

@@ -4,6 +4,7 @@ use anyhow::anyhow;
 use glam::{DVec3, Vec2, Vec3};
 use softbox::camera::{Camera, Framing};
 use softbox::geometry::Shapes;
+use softbox::light::LightSampleContext;
 use softbox::math::Normalization;
 use softbox::scene::{Instancing, PrepareSettings, PreparedScene, Scene, initial_camera, prepare};
 use softbox::settings::CameraRule;
@@ -63,7 +64,10 @@ impl Lamp {
                 let sample = scene.light(chosen.light).sample_part(
                     scene.shapes(),
                     chosen.part as usize,
-                    from,
+                    &LightSampleContext {
+                        point: from,
+                        normal,
+                    },
                     numbers,
                 )?;
                 Some((sample.wi, sample.distance))

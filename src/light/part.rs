@@ -1,0 +1,100 @@
+use glam::{Vec2, Vec3};
+
+use super::merge::parallelograms;
+use super::parallelogram::Parallelogram;
+use crate::geometry::Shapes;
+use crate::sampling::uniform_triangle;
+
+/// A flat part of an area light, counter-clockwise seen from its front.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum AreaPart {
+    /// A triangle that makes no parallelogram with another.
+    Triangle([Vec3; 3]),
+    /// Two triangles that make a parallelogram, or the rectangle that rays do not meet.
+    Parallelogram {
+        /// One corner.
+        corner: Vec3,
+        /// From the corner to the next.
+        edge_1: Vec3,
+        /// From the corner to the one before.
+        edge_2: Vec3,
+    },
+}
+
+/// A part as it is sampled.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Part {
+    /// With its unit normal; nothing for a triangle without area.
+    Triangle([Vec3; 3], Option<Vec3>),
+    Parallelogram(Parallelogram),
+}
+
+impl Part {
+    fn triangle(corners: [Vec3; 3]) -> Self {
+        let [a, b, c] = corners;
+        Self::Triangle(corners, (b - a).cross(c - a).try_normalize())
+    }
+
+    /// Of one side.
+    pub(super) fn area(&self) -> f32 {
+        match self {
+            Self::Triangle([a, b, c], _) => 0.5 * (b - a).cross(c - a).length(),
+            Self::Parallelogram(whole) => whole.area,
+        }
+    }
+
+    /// Unit; nothing for a triangle without area.
+    pub(super) fn normal(&self) -> Option<Vec3> {
+        match self {
+            Self::Triangle(_, normal) => *normal,
+            Self::Parallelogram(whole) => Some(whole.normal),
+        }
+    }
+
+    /// A point evenly spread over the area.
+    pub(super) fn even_point(&self, u: Vec2) -> Vec3 {
+        match self {
+            Self::Triangle([a, b, c], _) => {
+                let (b1, b2) = uniform_triangle(u);
+                a + b1 * (b - a) + b2 * (c - a)
+            }
+            Self::Parallelogram(whole) => whole.at(u),
+        }
+    }
+
+    /// What others see of it.
+    pub(super) fn outline(&self) -> AreaPart {
+        match *self {
+            Self::Triangle(corners, _) => AreaPart::Triangle(corners),
+            Self::Parallelogram(whole) => AreaPart::Parallelogram {
+                corner: whole.corner,
+                edge_1: whole.edge_1,
+                edge_2: whole.edge_2,
+            },
+        }
+    }
+}
+
+/// The parts of a light of triangles, and each primitive with its part, by primitive.
+pub(super) fn parts_of(shapes: &Shapes, primitives: &[u32]) -> (Vec<Part>, Vec<(u32, u32)>) {
+    let vertices = |&id: &u32| shapes.vertices(id as usize);
+    let triangles: Vec<[Vec3; 3]> = primitives.iter().map(vertices).collect();
+    let partners = parallelograms(&triangles);
+    let mut parts = Vec::new();
+    let mut part_of: Vec<(u32, u32)> = Vec::with_capacity(primitives.len());
+    for (index, &primitive) in primitives.iter().enumerate() {
+        let part = match partners[index] {
+            Some((partner, _)) if partner < index => part_of[partner].1,
+            partner => {
+                parts.push(match partner {
+                    Some((_, whole)) => Part::Parallelogram(whole),
+                    None => Part::triangle(triangles[index]),
+                });
+                parts.len() as u32 - 1
+            }
+        };
+        part_of.push((primitive, part));
+    }
+    part_of.sort_unstable();
+    (parts, part_of)
+}
