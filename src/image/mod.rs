@@ -3,9 +3,11 @@
 mod compare;
 mod flip;
 mod region;
+mod score;
 
 pub use compare::{CompareError, Comparison, compare};
 pub use region::Region;
+pub use score::{Score, score};
 
 /// A rectangle of pixels, row by row from the top left, y down.
 #[derive(Clone, Debug, PartialEq)]
