@@ -18,8 +18,8 @@ pub struct WeightedPoint {
 pub struct PowerLaw {
     /// Exponent.
     pub slope: f64,
-    /// Standard error of the slope; 0 for two points.
-    pub slope_error: f64,
+    /// Standard error of the slope; `None` for two points, which tell nothing about it.
+    pub slope_error: Option<f64>,
     /// ln y at x = 1.
     pub intercept: f64,
 }
@@ -65,11 +65,9 @@ impl PowerLaw {
             .iter()
             .map(|[x, y, w]| w * (y - intercept - slope * x).powi(2))
             .sum();
-        let degrees = logs.len() - 2;
-        let slope_error = match degrees {
-            0 => 0.0,
-            n => ((scatter / n as f64).max(1.0) / spread).sqrt(),
-        };
+        let degrees = (logs.len() - 2) as f64;
+        let widened = (scatter / degrees).max(1.0);
+        let slope_error = (degrees > 0.0).then(|| (widened / spread).sqrt());
         Some(Self {
             slope,
             slope_error,
@@ -114,7 +112,7 @@ mod tests {
     #[test]
     fn an_exact_line_is_recovered_and_reached() {
         let line = curve(-1.25, |_| 0.0, &mut SplitMix(1));
-        assert!((line.slope + 1.25).abs() < 1e-9 && line.slope_error < 1e-5);
+        assert!((line.slope + 1.25).abs() < 1e-9 && line.slope_error.unwrap() < 1e-5);
         assert!((line.at(1.0) - 0.2).abs() < 1e-9);
         let inside = line.reach(0.01, (1e-3, 0.1)).unwrap();
         assert!((inside.cpu_seconds - 20_f64.powf(0.8)).abs() < 1e-6 && !inside.is_extrapolated);
@@ -134,7 +132,7 @@ mod tests {
             let line = curve(-1.0, noise, &mut random);
             sum += line.slope + 1.0;
             squares += (line.slope + 1.0).powi(2);
-            errors += line.slope_error.powi(2);
+            errors += line.slope_error.unwrap().powi(2);
         }
         let n = f64::from(trials);
         let deviation = (squares / n).sqrt();
@@ -165,6 +163,6 @@ mod tests {
             point(8.0, f64::NAN),
         ];
         let line = PowerLaw::fit(&usable).unwrap();
-        assert!((line.slope + 1.0).abs() < 1e-12 && line.slope_error == 0.0);
+        assert!((line.slope + 1.0).abs() < 1e-12 && line.slope_error.is_none());
     }
 }
