@@ -4,7 +4,7 @@ use std::time::Instant;
 use anyhow::{Context, anyhow};
 use serde::Serialize;
 use softbox::color::Rgb;
-use softbox::image::{Image, Region};
+use softbox::image::Image;
 use softbox::io::picture::read_picture;
 use softbox::session::Workbench;
 use softbox::settings::{Mode, RenderSettings};
@@ -72,7 +72,7 @@ fn fitting(image: Image<Rgb>, settings: &RenderSettings) -> anyhow::Result<Image
         return Ok(image);
     }
     if size == (settings.width as usize, settings.height as usize) {
-        return Ok(cut(&image, region));
+        return Ok(image.part(region));
     }
     Err(anyhow!(
         "it has {}x{} pixels, the picture {}x{}; give --size",
@@ -81,18 +81,6 @@ fn fitting(image: Image<Rgb>, settings: &RenderSettings) -> anyhow::Result<Image
         settings.width,
         settings.height
     ))
-}
-
-fn cut(image: &Image<Rgb>, region: Region) -> Image<Rgb> {
-    let (columns, rows) = (
-        region.x..region.x + region.width,
-        region.y..region.y + region.height,
-    );
-    let pixels = rows
-        .flat_map(|y| columns.clone().map(move |x| (x, y)))
-        .map(|(x, y)| *image.get(x as usize, y as usize))
-        .collect();
-    Image::from_pixels(region.width as usize, region.height as usize, pixels)
 }
 
 /// Renders a reference of `samples` in each pixel in two halves, or of fewer where the time does not
@@ -138,6 +126,8 @@ pub(super) fn make(
 
 #[cfg(test)]
 mod tests {
+    use softbox::image::Region;
+
     use super::*;
 
     #[test]
