@@ -51,6 +51,7 @@
 //!   background, makes another one over the same tables; renders change over between two batches.
 //! - No module below the program knows windows, threads (but for `session`), the clock (but for
 //!   `session` and build times) or files (but for `io`).
+//! - A [`session::Workbench`] renders the same pictures in steps, for `bench` to score.
 //! - The host says every frame what it wants to see; only `session` decides what that costs.
 //! - Radiance that is NaN, infinite or negative never reaches the film; it is counted.
 //!

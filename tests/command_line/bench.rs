@@ -11,7 +11,7 @@ use crate::{errors, folder_with, names, run, softbox, status};
 const QUICK: &str = "bench cornell-empty --size 24x18 --threads 1 --quiet";
 
 fn measured(words: &str) -> Value {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = tempfile::tempdir().expect("a temporary folder");
     let text = run(&folder, &format!("{QUICK} --json {words}"));
     let reports: Value = serde_json::from_str(&text).expect("JSON");
     assert_eq!(reports.as_array().map(Vec::len), Some(1));

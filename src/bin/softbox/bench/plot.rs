@@ -28,6 +28,8 @@ const SHORT_AXIS: f64 = 300.0;
 #[derive(Clone, Debug, PartialEq)]
 struct Line {
     label: String,
+    /// The first mode of its scene: drawn broad, so that it shows under others.
+    is_first: bool,
     /// Processor seconds and relMSE, both above 0.
     points: Vec<(f64, f64)>,
 }
@@ -39,7 +41,10 @@ struct Line {
 pub(super) fn draw(reports: &[SceneReport]) -> anyhow::Result<Vec<[u8; 3]>> {
     let lines: Vec<Line> = reports
         .iter()
-        .flat_map(|report| report.methods.iter().map(|m| line(report, m)))
+        .flat_map(|report| {
+            let methods = report.methods.iter().enumerate();
+            methods.map(|(index, method)| line(report, method, index == 0))
+        })
         .filter(|line| !line.points.is_empty())
         .collect();
     if lines.is_empty() {
@@ -58,13 +63,14 @@ pub(super) fn draw(reports: &[SceneReport]) -> anyhow::Result<Vec<[u8; 3]>> {
     Ok(bytes.chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect())
 }
 
-fn line(report: &SceneReport, method: &Method) -> Line {
+fn line(report: &SceneReport, method: &Method, is_first: bool) -> Line {
     let slope = method
         .power_law
         .map_or(String::new(), |law| format!(", slope {:.2}", law.slope));
     let levels = method.levels.iter();
     Line {
         label: format!("{} {}{slope}", report.scene, method.mode),
+        is_first,
         points: levels
             .map(|level| (level.cpu_seconds, level.rel_mse))
             .filter(|&(x, y)| x > 0.0 && y > 0.0)
@@ -99,16 +105,14 @@ fn draw_on<B: DrawingBackend>(area: &DrawingArea<B, Shift>, lines: &[Line]) -> D
         .y_label_formatter(&|&y| tick(y, y_range))
         .draw()?;
     for (line, color) in lines.iter().zip(COLORS.iter().cycle()) {
-        let stroke = color.stroke_width(3);
+        let (width, radius) = if line.is_first { (6, 7) } else { (2, 4) };
+        let stroke = color.stroke_width(width);
         chart
             .draw_series(LineSeries::new(line.points.iter().copied(), stroke))?
             .label(line.label.as_str())
             .legend(move |(x, y)| PathElement::new([(x, y), (x + 32, y)], stroke));
-        let dots = line
-            .points
-            .iter()
-            .map(|&p| Circle::new(p, 5, color.filled()));
-        chart.draw_series(dots)?;
+        let dots = line.points.iter();
+        chart.draw_series(dots.map(|&p| Circle::new(p, radius, color.filled())))?;
     }
     chart
         .configure_series_labels()
