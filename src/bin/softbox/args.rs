@@ -68,6 +68,10 @@ enum Command {
     /// Compare a picture with a reference, on linear data
     Compare(CompareArgs),
     /// Measure error against time, or with --rays how fast rays are traced
+    ///
+    /// Each mode renders each scene with several seeds, all taking turns; at every number of samples
+    /// the picture so far is scored against a reference. Errors are relMSE, the mean of
+    /// (x - r)^2 / (r^2 + 0.01), without clamping; efficiency is 1 / (relMSE x processor seconds).
     #[command(mut_arg("size", |size| size.help(bench_args::SIZE_HELP)))]
     Bench(Box<BenchArgs>),
     /// Measure how fast scenes are built and rays are traced

@@ -16,10 +16,6 @@ const SIZE: [u32; 2] = [480, 360];
 const REFERENCE_FACTOR: u32 = 16;
 
 /// `softbox bench`: error against processor time.
-///
-/// Each mode renders each scene with several seeds, all taking turns; at every number of samples
-/// the picture so far is scored against a reference. Errors are relMSE, the mean of
-/// (x - r)^2 / (r^2 + 0.01), without clamping; efficiency is 1 / (relMSE x processor seconds).
 #[derive(Args, Clone, Debug, PartialEq)]
 pub(crate) struct BenchArgs {
     /// Scene files or built-in scenes; without any, all that are built in

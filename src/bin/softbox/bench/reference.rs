@@ -83,33 +83,50 @@ fn fitting(image: Image<Rgb>, settings: &RenderSettings) -> anyhow::Result<Image
     ))
 }
 
-/// Renders a reference of `samples` in each pixel in two halves, or of fewer where the time does not
-/// suffice; `None` when stopped.
+/// How a reference is made here.
+pub(super) struct Recipe<'a> {
+    pub(super) mode: Mode,
+    /// Seed of the runs that are scored against it; its own are others.
+    pub(super) seed: u64,
+    /// Samples in each pixel, both halves together.
+    pub(super) samples: u32,
+    /// Seconds on the wall, after which it does with fewer samples.
+    pub(super) time_limit: Option<f64>,
+    pub(super) stop: &'a (dyn Fn() -> bool + Sync),
+}
+
+/// Renders a reference in two halves; `None` when stopped. `on_step` is told the fraction that is
+/// done.
 pub(super) fn make(
     bench: &Workbench,
-    (mode, seed): (Mode, u64),
-    samples: u32,
-    time_limit: Option<f64>,
-    stop: &(dyn Fn() -> bool + Sync),
+    recipe: &Recipe<'_>,
+    on_step: &mut dyn FnMut(f64),
 ) -> Option<(Reference, ReferenceFacts)> {
-    let seed = seed.wrapping_add(SEEDS);
-    let half = samples.div_ceil(2);
+    let (mode, seed) = (recipe.mode, recipe.seed.wrapping_add(SEEDS));
+    let half = recipe.samples.div_ceil(2);
     let mut first = bench.begin(mode, seed);
     let started = Instant::now();
-    let mut target = if time_limit.is_some() { 1 } else { half };
-    loop {
-        if !bench.advance(&mut first, target, stop) {
-            return None;
-        }
-        let after = 2.0 * started.elapsed().as_secs_f64();
-        if target >= half || time_limit.is_some_and(|limit| after > 0.5 * limit) {
+    let mut target = 0;
+    while target < half {
+        let next = next_step(target, half);
+        let after = started.elapsed().as_secs_f64() * f64::from(next) / f64::from(target.max(1));
+        let is_too_long = |limit: f64| after > 0.5 * limit;
+        if target > 0 && recipe.time_limit.is_some_and(is_too_long) {
             break;
         }
-        target = target.saturating_mul(2).min(half);
+        if !bench.advance(&mut first, next, recipe.stop) {
+            return None;
+        }
+        target = next;
+        on_step(0.5 * f64::from(target) / f64::from(half));
     }
     let mut second = bench.begin(mode, seed.wrapping_add(1));
-    if !bench.advance(&mut second, target, stop) {
-        return None;
+    while second.samples_per_pixel() < target {
+        let next = next_step(second.samples_per_pixel(), half).min(target);
+        if !bench.advance(&mut second, next, recipe.stop) {
+            return None;
+        }
+        on_step(0.5 + 0.5 * f64::from(next) / f64::from(target));
     }
     let reference = Reference::from_halves(&first.image(), &second.image())
         .expect("two pictures of the same finite film");
@@ -122,6 +139,12 @@ pub(super) fn make(
         cpu_seconds: first.cpu_seconds() + second.cpu_seconds(),
     };
     Some((reference, facts))
+}
+
+/// Twice as many samples, but not much more than a sixteenth of all: somebody wants to see progress.
+fn next_step(done: u32, all: u32) -> u32 {
+    let step = done.clamp(1, all.div_ceil(16).max(1));
+    done.saturating_add(step).min(all)
 }
 
 #[cfg(test)]

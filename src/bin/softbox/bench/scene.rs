@@ -7,7 +7,7 @@ use anyhow::anyhow;
 use softbox::session::{RenderJob, Workbench};
 
 use super::measure::{Plan, measure as measure_curves};
-use super::reference;
+use super::reference::{self, Recipe};
 use super::report::{Facts, SceneReport};
 use crate::bench_args::BenchArgs;
 use crate::exit::{Failure, Status};
@@ -49,9 +49,18 @@ pub(super) fn measure(
         return Ok(None);
     }
     let given = given.or_else(|| {
-        let estimator = (args.chosen_reference_mode(), settings.seed);
-        let samples = args.chosen_reference_spp();
-        reference::make(&bench, estimator, samples, args.time_limit, stop)
+        let recipe = Recipe {
+            mode: args.chosen_reference_mode(),
+            seed: settings.seed,
+            samples: args.chosen_reference_spp(),
+            time_limit: args.time_limit,
+            stop,
+        };
+        let begin = Instant::now();
+        let mut on_step = |fraction: f64| {
+            progress.update(&standing(fraction, begin, recipe.samples));
+        };
+        reference::make(&bench, &recipe, &mut on_step)
     });
     let Some((reference, reference_facts)) = given else {
         return Ok(None);
@@ -65,10 +74,10 @@ pub(super) fn measure(
         seeds: &seeds,
         time_limit: args.time_limit,
     };
+    let most = args.spp.as_slice().iter().max().copied().unwrap_or(0);
     let begin = Instant::now();
     let mut on_step = |fraction: f64| {
-        let seconds = begin.elapsed().as_secs_f64();
-        progress.update(&standing(fraction, seconds, args));
+        progress.update(&standing(fraction, begin, most.saturating_mul(args.seeds)));
     };
     let curves = measure_curves(&bench, &reference, &plan, stop, &mut on_step)
         .map_err(Status::Failed.because())?;
@@ -84,12 +93,11 @@ pub(super) fn measure(
     Ok(SceneReport::new(args, facts, &modes, &curves))
 }
 
-fn standing(fraction: f64, seconds: f64, args: &BenchArgs) -> Standing {
-    let most = args.spp.as_slice().iter().max().copied().unwrap_or(0);
-    let samples = fraction * f64::from(most) * f64::from(args.seeds);
+fn standing(fraction: f64, begin: Instant, samples: u32) -> Standing {
+    let seconds = begin.elapsed().as_secs_f64();
     Standing {
-        samples,
-        target_samples: Some(most.saturating_mul(args.seeds)),
+        samples: fraction * f64::from(samples),
+        target_samples: Some(samples),
         fraction: Some(fraction),
         seconds,
         relative_error: None,

@@ -1,7 +1,7 @@
 //! The error of the picture against its processor time.
 
-use eframe::egui::{self, DragValue, TextEdit, Ui};
-use egui_plot::{HLine, Line, Plot, PlotPoints, Points};
+use eframe::egui::{self, DragValue, Label, RichText, TextEdit, Ui};
+use egui_plot::{GridInput, GridMark, HLine, Line, Plot, PlotPoints, Points};
 use softbox::study::PowerLaw;
 
 use super::optional;
@@ -33,33 +33,39 @@ fn reference(ui: &mut Ui, curve: &mut ErrorCurve, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         let name = ui.label("Reference").on_hover_text(help);
         let edit = TextEdit::singleline(&mut curve.path)
-            .desired_width(150.0)
+            .desired_width(ui.available_width() - 16.0)
             .hint_text("reference.exr");
         let response = ui.add(edit).labelled_by(name.id).on_hover_text(help);
         let is_entered = response.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
-        let is_clicked = ui.button("Compare").clicked();
-        let path = curve.path.trim();
-        if (is_entered || is_clicked) && !path.is_empty() {
-            commands.push(Command::ReadReference(path.into()));
+        if is_entered {
+            ask(curve, commands);
+        }
+    });
+    ui.horizontal(|ui| {
+        if ui.button("Compare").clicked() {
+            ask(curve, commands);
         }
         if ui.button("Browse…").clicked() {
             commands.push(Command::ChooseReference);
         }
-    });
-    let shown = curve.reference_name().map(str::to_owned);
-    ui.horizontal(|ui| match shown {
-        Some(name) => {
-            ui.label(format!("against {name}"));
-            if ui.button("Forget").clicked() {
-                commands.push(Command::ForgetReference);
-            }
-        }
-        None => {
-            ui.label("estimated from the spread of the samples");
+        if curve.reference_name().is_some() && ui.button("Forget").clicked() {
+            commands.push(Command::ForgetReference);
         }
     });
+    match curve.reference_name() {
+        Some(name) => ui.label(format!("against {name}")),
+        None => ui.label("estimated from the spread of the samples"),
+    };
     if let Some(sentence) = curve.misfit() {
         ui.colored_label(ui.visuals().warn_fg_color, sentence);
+    }
+}
+
+/// Asks for the picture whose path is typed.
+fn ask(curve: &ErrorCurve, commands: &mut Vec<Command>) {
+    let path = curve.path.trim();
+    if !path.is_empty() {
+        commands.push(Command::ReadReference(path.into()));
     }
 }
 
@@ -97,7 +103,7 @@ fn facts(ui: &mut Ui, curve: &ErrorCurve) {
         text += &format!(", slope {:.2}", law.slope);
         text += &reached(&law, curve.target, (last.cpu_seconds, last.rel_mse));
     }
-    ui.monospace(text);
+    ui.add(Label::new(RichText::new(text).monospace()).wrap());
 }
 
 /// When the target is reached, or since when.
@@ -128,6 +134,8 @@ fn plot(ui: &mut Ui, curve: &ErrorCurve) {
         .allow_scroll(false)
         .x_axis_label("processor seconds")
         .y_axis_label("relMSE")
+        .x_grid_spacer(decades)
+        .y_grid_spacer(decades)
         .x_axis_formatter(|mark, _| number(mark.value))
         .y_axis_formatter(|mark, _| number(mark.value))
         .y_axis_min_width(48.0);
@@ -148,14 +156,34 @@ fn plot(ui: &mut Ui, curve: &ErrorCurve) {
     });
 }
 
-/// Ten to the power of `exponent`, short.
+/// One to nine times each power of ten, the more important ones with more room around them.
+fn decades(input: GridInput) -> Vec<GridMark> {
+    let (low, high) = input.bounds;
+    if !(high - low).is_finite() || high - low > 40.0 {
+        return Vec::new();
+    }
+    let powers = low.floor() as i32..=high.ceil() as i32;
+    powers
+        .flat_map(|power| (1..=9).map(move |digit| (power, digit)))
+        .map(|(power, digit)| GridMark {
+            value: f64::from(power) + f64::from(digit).log10(),
+            step_size: match digit {
+                1 => 1.0,
+                2 | 5 => 0.3,
+                _ => 0.08,
+            },
+        })
+        .filter(|mark| (low..=high).contains(&mark.value))
+        .collect()
+}
+
+/// Ten to the power of `exponent`, with one digit.
 fn number(exponent: f64) -> String {
     let value = 10_f64.powf(exponent);
-    if (0.01..1000.0).contains(&value) {
-        let digits = (1.0 - exponent.floor()).clamp(0.0, 3.0) as usize;
-        format!("{value:.digits$}")
-    } else {
-        format!("{value:.0e}")
+    match (exponent + 1e-6).floor() as i32 {
+        decimals @ -2..0 => format!("{value:.0$}", decimals.unsigned_abs() as usize),
+        0..3 => format!("{value:.0}"),
+        _ => format!("{value:.0e}"),
     }
 }
 
@@ -164,15 +192,34 @@ mod tests {
     use super::*;
 
     #[test]
+    fn the_grid_has_nine_lines_in_each_decade() {
+        let marks = decades(GridInput {
+            bounds: (-2.5, 0.5),
+            base_step_size: 0.1,
+        });
+        assert_eq!(marks.len(), 6 + 9 + 9 + 3);
+        let tens: Vec<f64> = marks
+            .iter()
+            .filter(|mark| mark.step_size == 1.0)
+            .map(|mark| mark.value)
+            .collect();
+        assert_eq!(tens, [-2.0, -1.0, 0.0]);
+        let endless = GridInput {
+            bounds: (f64::NEG_INFINITY, 1.0),
+            base_step_size: 0.1,
+        };
+        assert!(decades(endless).is_empty());
+    }
+
+    #[test]
     fn ticks_and_targets_are_short() {
-        assert_eq!(
-            (number(0.0).as_str(), number(-1.0).as_str()),
-            ("1.0", "0.10")
-        );
+        assert_eq!((number(0.0).as_str(), number(-1.0).as_str()), ("1", "0.1"));
         assert_eq!(
             (number(2.0).as_str(), number(-4.0).as_str()),
             ("100", "1e-4")
         );
+        assert_eq!(number(0.02_f64.log10()), "0.02");
+        assert_eq!(number(0.01_f64.log10()), "0.01");
         let law = PowerLaw {
             slope: -1.0,
             slope_error: None,
