@@ -8,6 +8,8 @@ mod curve;
 mod power_law;
 mod quantile;
 mod reference;
+#[cfg(test)]
+mod synthetic;
 mod verdict;
 
 pub use bootstrap::{FEWEST_RUNS, bootstrap_interval};

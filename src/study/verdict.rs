@@ -63,7 +63,7 @@ fn last_common<'a>(ours: &'a Curve, other: &'a Curve) -> Option<(&'a Level, &'a 
 #[cfg(test)]
 mod tests {
     use super::super::bootstrap::SplitMix;
-    use super::super::curve::tests::synthetic;
+    use super::super::synthetic::synthetic;
     use super::*;
 
     #[test]

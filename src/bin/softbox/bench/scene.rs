@@ -62,6 +62,7 @@ pub(super) fn measure(
         };
         reference::make(&bench, &recipe, &mut on_step)
     });
+    progress.finish();
     let Some((reference, reference_facts)) = given else {
         return Ok(None);
     };
