@@ -15,7 +15,7 @@
 //!  6  integrator       one path
 //!  5  scene            description → runtime
 //!  4  light  display  settings
-//!  3  geometry  bsdf  camera  film
+//!  3  geometry  bsdf  camera  film  study
 //!  2  bvh  image
 //!  1  sampling
 //!  0  math  color
@@ -51,6 +51,7 @@
 //!   background, makes another one over the same tables; renders change over between two batches.
 //! - No module below the program knows windows, threads (but for `session`), the clock (but for
 //!   `session` and build times) or files (but for `io`).
+//! - A [`session::Workbench`] renders the same pictures in steps, for `bench` to score.
 //! - The host says every frame what it wants to see; only `session` decides what that costs.
 //! - Radiance that is NaN, infinite or negative never reaches the film; it is counted.
 //!
@@ -64,6 +65,7 @@
 //! | a material | `bsdf/`: its file and variant; `scene::Surface`; `io` reads it; a chi-square case |
 //! | a light | `light/`: its file, variant and bounds for the tree; `scene::LightKind`; a chi-square case |
 //! | a setting | [`settings`]; a flag in the program's `args`, a row in a panel |
+//! | a figure of `bench` | [`study`]; the program's `bench/` prints it |
 //! | a file format | `io/`: a file, and a line where the extension is looked up |
 //! | a faster traversal | `bvh/`, `geometry/aggregate.rs`; callers see the batch interface |
 
@@ -83,3 +85,4 @@ pub mod sampling;
 pub mod scene;
 pub mod session;
 pub mod settings;
+pub mod study;

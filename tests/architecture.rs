@@ -9,7 +9,7 @@ const FLOORS: [&[&str]; 8] = [
     &["math", "color"],
     &["sampling"],
     &["bvh", "image"],
-    &["geometry", "bsdf", "camera", "film"],
+    &["geometry", "bsdf", "camera", "film", "study"],
     &["light", "display", "settings"],
     &["scene"],
     &["integrator"],

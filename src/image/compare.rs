@@ -4,11 +4,8 @@ use crate::color::Rgb;
 
 use super::Image;
 use super::flip::mean_flip;
+use super::score::{Score, pairs, score};
 
-/// Added to r² in relMSE so that black pixels do not divide by zero.
-const REL_MSE_FLOOR: f64 = 0.01;
-/// The worst of this many pixels is left out of the trimmed figure.
-const TRIM_ONE_IN: usize = 1000;
 /// Edge of the blocks whose means are compared, in pixels.
 const BLOCK: usize = 8;
 
@@ -57,34 +54,23 @@ pub enum CompareError {
 /// # Errors
 /// When the sizes differ or nothing is left to compare.
 pub fn compare(image: &Image<Rgb>, reference: &Image<Rgb>) -> Result<Comparison, CompareError> {
-    let size = |i: &Image<Rgb>| (i.width(), i.height());
-    if size(image) != size(reference) {
-        return Err(CompareError::Size {
-            size: size(image),
-            reference: size(reference),
-        });
+    let Score {
+        rel_mse,
+        rel_mse_trimmed,
+        mse,
+        ..
+    } = score(image, reference)?;
+    let (mut sums, mut count) = ([glam::DVec3::ZERO; 2], 0);
+    for (x, r) in pairs(image, reference)? {
+        sums[0] += x.as_dvec3();
+        sums[1] += r.as_dvec3();
+        count += 1;
     }
-    let pairs = || {
-        let both = image.pixels().iter().zip(reference.pixels());
-        both.filter(|(x, r)| x.is_finite() && r.is_finite())
-    };
-    let count = pairs().count();
-    if count == 0 {
-        return Err(CompareError::NoPixels);
-    }
-    let mut errors: Vec<f64> = pairs().map(|(&x, &r)| relative_error(x, r)).collect();
-    let rel_mse = mean(&errors);
-    errors.sort_unstable_by(f64::total_cmp);
-    errors.truncate(count - count / TRIM_ONE_IN);
-    let squared = pairs().map(|(x, r)| (x.as_dvec3() - r.as_dvec3()).length_squared() / 3.0);
-    let means = pairs().fold([glam::DVec3::ZERO; 2], |[x, r], (px, pr)| {
-        [x + px.as_dvec3(), r + pr.as_dvec3()]
-    });
-    let [x, r] = means.map(|sum| sum / count as f64);
+    let [x, r] = sums.map(|sum| sum / count as f64);
     Ok(Comparison {
         rel_mse,
-        rel_mse_trimmed: mean(&errors),
-        mse: squared.sum::<f64>() / count as f64,
+        rel_mse_trimmed,
+        mse,
         flip: mean_flip(image, reference),
         mean_difference: (x - r).to_array(),
         mean: x.to_array(),
@@ -92,17 +78,6 @@ pub fn compare(image: &Image<Rgb>, reference: &Image<Rgb>) -> Result<Comparison,
         max_block_difference: max_block_difference(image, reference),
         invalid_pixels: image.pixels().len() - count,
     })
-}
-
-/// relMSE of one pixel, mean of its channels.
-fn relative_error(x: Rgb, r: Rgb) -> f64 {
-    let (x, r) = (x.as_dvec3(), r.as_dvec3());
-    let difference = x - r;
-    (difference * difference / (r * r + REL_MSE_FLOOR)).element_sum() / 3.0
-}
-
-fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len() as f64
 }
 
 fn max_block_difference(image: &Image<Rgb>, reference: &Image<Rgb>) -> f64 {

@@ -3,9 +3,11 @@
 mod compare;
 mod flip;
 mod region;
+mod score;
 
 pub use compare::{CompareError, Comparison, compare};
 pub use region::Region;
+pub use score::{Score, score};
 
 /// A rectangle of pixels, row by row from the top left, y down.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,6 +57,21 @@ impl<T> Image<T> {
 }
 
 impl<T: Clone> Image<T> {
+    /// The pixels inside `region`.
+    ///
+    /// # Panics
+    /// When the region reaches beyond the image.
+    pub fn part(&self, region: Region) -> Self {
+        let (width, height) = (region.width as usize, region.height as usize);
+        let (x, y) = (region.x as usize, region.y as usize);
+        let rows = (y..y + height).map(|y| y * self.width);
+        let pixels = rows
+            .flat_map(|row| &self.pixels[row + x..row + x + width])
+            .cloned()
+            .collect();
+        Self::from_pixels(width, height, pixels)
+    }
+
     /// An image of one value.
     pub fn filled(width: usize, height: usize, value: T) -> Self {
         Self {

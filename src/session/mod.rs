@@ -15,11 +15,13 @@ mod publish;
 mod refinement;
 mod snapshot;
 mod status;
+mod workbench;
 mod workers;
 
 pub use job::{RenderJob, SessionOptions};
 pub use snapshot::{SampleCounts, Snapshot};
 pub use status::{SessionState, SessionStatus, StopReason, TreeState};
+pub use workbench::{Exposure, Workbench};
 
 use std::sync::Arc;
 use std::thread::JoinHandle;

@@ -15,6 +15,7 @@ pub(super) struct Caption<'a> {
     pub(super) job: &'a RenderJob,
     pub(super) generation: u64,
     pub(super) seconds: f64,
+    pub(super) cpu_seconds: f64,
 }
 
 impl Caption<'_> {
@@ -39,6 +40,7 @@ impl Caption<'_> {
             samples_mean: f64::from(u8::from(!is_preview)),
             samples_max: 1,
             seconds: self.seconds,
+            cpu_seconds: self.cpu_seconds,
             relative_error: None,
             camera: self.job.camera,
             settings: settings.clone(),
@@ -104,6 +106,7 @@ impl Caption<'_> {
             samples_mean: summary.samples as f64 / summary.pixels.max(1) as f64,
             samples_max: summary.most,
             seconds: self.seconds,
+            cpu_seconds: self.cpu_seconds,
             relative_error: summary.relative_error,
             camera: self.job.camera,
             settings: settings.clone(),

@@ -49,6 +49,8 @@ pub struct Snapshot {
     pub samples_max: u32,
     /// Seconds spent rendering.
     pub seconds: f64,
+    /// Processor time that the workers spent on these samples.
+    pub cpu_seconds: f64,
     /// Root of the relative squared error that the sample variance predicts.
     pub relative_error: Option<f64>,
     /// From where.

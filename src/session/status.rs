@@ -68,6 +68,8 @@ pub struct SessionStatus {
     pub samples_target: Option<u32>,
     /// Seconds spent rendering this picture.
     pub seconds: f64,
+    /// Processor time that the workers spent on this picture.
+    pub cpu_seconds: f64,
     /// Seconds spent building the hierarchy and the light tables of this scene.
     pub build_seconds: f64,
     /// The hierarchy of this scene.

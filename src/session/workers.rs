@@ -70,6 +70,11 @@ impl Workers {
         Self::new(threads, self.is_background)
     }
 
+    /// Processor time of all workers since they began, seconds; asked while they rest.
+    pub(super) fn cpu_seconds(&self) -> f64 {
+        self.pool.broadcast(|_| thread_seconds()).iter().sum()
+    }
+
     pub(super) fn install<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
         self.pool.install(work)
     }
@@ -107,6 +112,22 @@ impl WorkerArrays {
             }
         }
     }
+}
+
+/// Processor time of this thread, seconds.
+#[cfg(unix)]
+fn thread_seconds() -> f64 {
+    let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
+    time.tv_sec as f64 + time.tv_nsec as f64 * 1e-9
+}
+
+/// Without such a clock, time on the wall.
+#[cfg(not(unix))]
+fn thread_seconds() -> f64 {
+    use std::sync::LazyLock;
+    use std::time::Instant;
+    static START: LazyLock<Instant> = LazyLock::new(Instant::now);
+    START.elapsed().as_secs_f64()
 }
 
 #[cfg(target_os = "linux")]

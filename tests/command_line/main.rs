@@ -1,6 +1,7 @@
 //! Drives the program itself: streams, exit statuses, files.
 
 mod bench;
+mod bench_rays;
 #[path = "../collada_text/mod.rs"]
 mod collada_text;
 mod compare;
@@ -90,7 +91,8 @@ fn wrong_usage_ends_with_status_2_and_help_with_0() {
         &["render", "x.dae", "-o", "a.png", "--no-such-option"],
         &["render", "x.dae", "-o", "a.png", "--max-depth", "-1"],
         &["compare", "a.exr"],
-        &["bench", "box36"],
+        &["bench", "cornell-empty", "--spp", "4..1"],
+        &["bench", "cornell-empty", "--view", "depth"],
         &["bench", "--rays", "--rounds", "0", "box36"],
         &["-f", "a.png"],
         &["-f", "a.png", "-r", "480", "x.dae"],
@@ -106,6 +108,8 @@ fn wrong_usage_ends_with_status_2_and_help_with_0() {
         &["--help"][..],
         &["-h"],
         &["render", "--help"],
+        &["bench", "--help"],
+        &["bench", "--rays", "--help"],
         &["--version"],
     ] {
         let output = softbox(folder.path(), words);

@@ -5,14 +5,18 @@ use clap::error::ErrorKind;
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use softbox::settings::RenderSettings;
 
+use crate::bench_args::{self, BenchArgs};
 use crate::course_args::CourseArgs;
 use crate::isa;
 use crate::job::Job;
 use crate::ray_bench::Protocol;
-use crate::settings_args::SettingsArgs;
+use crate::settings_args::{SettingsArgs, StopArgs};
 
 /// Samples of `render` when no rule to stop is given.
 const DEFAULT_SPP: u32 = 64;
+
+/// The name of `bench --rays` inside the parser.
+const RAYS: &str = "bench-rays";
 
 const EXAMPLES: &str = "\
 Examples:
@@ -22,6 +26,8 @@ Examples:
   softbox -t 8 -s 64 -l 32 -m 6 -f a.png -r 480 360 scene.dae
                                                         a command line of the course
   softbox compare a.exr reference.exr --json            how far apart two pictures are
+  softbox bench cornell-spheres --compare best,hemisphere
+                                                        error against time, two estimators
 
 Exit status: 0 done, 1 failed, 2 wrong usage, 3 scene not readable, 4 output not writable,
 5 mismatch, 130 interrupted after writing what there is.";
@@ -37,8 +43,10 @@ pub(crate) enum Request {
     Info(InfoArgs),
     /// Compare two pictures.
     Compare(CompareArgs),
+    /// Measure error against time.
+    Bench(Box<BenchArgs>),
     /// Measure the tracer.
-    Bench(BenchArgs),
+    BenchRays(RaysArgs),
 }
 
 /// A path tracer for the CPU: in a window, or headless.
@@ -59,8 +67,16 @@ enum Command {
     Info(InfoArgs),
     /// Compare a picture with a reference, on linear data
     Compare(CompareArgs),
+    /// Measure error against time, or with --rays how fast rays are traced
+    ///
+    /// Each mode renders each scene with several seeds, all taking turns; at every number of samples
+    /// the picture so far is scored against a reference. Errors are relMSE, the mean of
+    /// (x - r)^2 / (r^2 + 0.01), without clamping; efficiency is 1 / (relMSE x processor seconds).
+    #[command(mut_arg("size", |size| size.help(bench_args::SIZE_HELP)))]
+    Bench(Box<BenchArgs>),
     /// Measure how fast scenes are built and rays are traced
-    Bench(BenchArgs),
+    #[command(name = RAYS, hide = true, bin_name = "softbox bench --rays")]
+    BenchRays(RaysArgs),
 }
 
 /// Without a subcommand: the window, or with -f the course's form.
@@ -72,6 +88,8 @@ struct PlainArgs {
     course: CourseArgs,
     #[command(flatten)]
     settings: SettingsArgs,
+    #[command(flatten)]
+    stop: StopArgs,
     #[command(flatten)]
     reporting: Reporting,
     #[command(flatten)]
@@ -91,6 +109,8 @@ struct RenderArgs {
     rate_picture: Option<PathBuf>,
     #[command(flatten)]
     settings: SettingsArgs,
+    #[command(flatten)]
+    stop: StopArgs,
     #[command(flatten)]
     reporting: Reporting,
 }
@@ -154,12 +174,12 @@ pub(crate) struct CompareArgs {
     pub(crate) json: bool,
 }
 
-/// `softbox bench`.
+/// `softbox bench --rays`.
 #[derive(Args, Clone, Debug, PartialEq)]
-pub(crate) struct BenchArgs {
+pub(crate) struct RaysArgs {
     /// Measure build time and rays per second
     #[arg(long, required = true)]
-    pub(crate) rays: bool,
+    rays: bool,
     /// Generated scenes (box36, ico10k, knot70k, dragon100k, slivers, city, ico1m, stadium, knot5m)
     /// or scene files; without any, all the generated ones
     #[arg(value_name = "SCENE")]
@@ -180,12 +200,13 @@ pub(crate) fn parse(
     words: impl IntoIterator<Item = impl Into<OsString> + Clone>,
     isa: Option<&OsStr>,
 ) -> Result<Request, clap::Error> {
-    let cli = Cli::try_parse_from(words)?;
+    let cli = Cli::try_parse_from(with_rays(words.into_iter().map(Into::into).collect()))?;
     let request = match cli.command {
         Some(Command::Render(args)) => render_request(*args),
         Some(Command::Info(args)) => Ok(Request::Info(args)),
         Some(Command::Compare(args)) => Ok(Request::Compare(args)),
-        Some(Command::Bench(args)) => Ok(Request::Bench(args)),
+        Some(Command::Bench(args)) => args.checked().map(Request::Bench),
+        Some(Command::BenchRays(args)) => Ok(Request::BenchRays(args)),
         None => plain_request(cli.plain),
     };
     request
@@ -193,12 +214,22 @@ pub(crate) fn parse(
         .map_err(|message| Cli::command().error(ErrorKind::ValueValidation, message))
 }
 
+/// `bench --rays` is a command of its own, with other options than `bench`.
+fn with_rays(mut words: Vec<OsString>) -> Vec<OsString> {
+    let is_bench = words.get(1).is_some_and(|word| word == "bench");
+    if is_bench && words.iter().any(|word| word == "--rays") {
+        words[1] = RAYS.into();
+    }
+    words
+}
+
 impl Request {
     /// With the instruction set that `variable` forces, unless an option does.
     fn with_variable(mut self, variable: Option<&OsStr>) -> Result<Self, String> {
         let isa = match &mut self {
             Self::View(job, _) | Self::Render(job, _) => &mut job.settings.isa,
-            Self::Bench(args) => &mut args.protocol.isa,
+            Self::Bench(args) => &mut args.settings.isa,
+            Self::BenchRays(args) => &mut args.protocol.isa,
             Self::Info(_) | Self::Compare(_) => return Ok(self),
         };
         *isa = isa::forced(*isa, variable)?;
@@ -207,7 +238,7 @@ impl Request {
 }
 
 fn plain_request(args: PlainArgs) -> Result<Request, String> {
-    let job = args.course.job(args.scene, &args.settings)?;
+    let job = args.course.job(args.scene, &args.settings, &args.stop)?;
     check_region(&job.settings)?;
     if args.course.is_headless() {
         Ok(Request::Render(job, args.reporting))
@@ -218,6 +249,7 @@ fn plain_request(args: PlainArgs) -> Result<Request, String> {
 
 fn render_request(args: RenderArgs) -> Result<Request, String> {
     let mut settings = args.settings.apply(RenderSettings::default());
+    settings.stop = args.stop.apply(settings.stop);
     let stop = &mut settings.stop;
     if stop.seconds.is_none() && stop.relative_error.is_none() {
         stop.samples_per_pixel = stop.samples_per_pixel.or(Some(DEFAULT_SPP));
@@ -235,7 +267,7 @@ fn render_request(args: RenderArgs) -> Result<Request, String> {
     Ok(Request::Render(job, args.reporting))
 }
 
-fn check_region(settings: &RenderSettings) -> Result<(), String> {
+pub(crate) fn check_region(settings: &RenderSettings) -> Result<(), String> {
     let (width, height) = (settings.width, settings.height);
     match settings.region {
         Some(region) if region.clipped(width, height).is_none() => Err(format!(

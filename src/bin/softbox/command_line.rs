@@ -175,6 +175,11 @@ fn operand(path: &Path) -> String {
     }
 }
 
+/// A path as one word for a POSIX shell, taken for neither an option nor a subcommand.
+pub(crate) fn word(path: &Path) -> String {
+    quoted(&operand(path))
+}
+
 /// One word for a POSIX shell.
 fn quoted(word: &str) -> String {
     let is_plain = |c: char| c.is_alphanumeric() || "_-./,:=+@%".contains(c);

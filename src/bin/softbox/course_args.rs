@@ -5,7 +5,7 @@ use softbox::image::Region;
 use softbox::settings::{MaxDepth, Mode, RenderSettings};
 
 use crate::job::Job;
-use crate::settings_args::SettingsArgs;
+use crate::settings_args::{SettingsArgs, StopArgs};
 use crate::values;
 
 /// The letters of the course's program that differ from the long options in form, so that its
@@ -43,13 +43,14 @@ impl CourseArgs {
         &self,
         scene: Option<PathBuf>,
         options: &SettingsArgs,
+        stop: &StopArgs,
     ) -> Result<Job, String> {
         let mut settings = RenderSettings::default();
         if self.is_headless() {
             settings.threads = 1;
             settings.max_depth = MaxDepth(1);
             settings.mode = Mode::Importance;
-            let is_limited = options.time_limit.is_some() || options.target_error.is_some();
+            let is_limited = stop.time_limit.is_some() || stop.target_error.is_some();
             settings.stop.samples_per_pixel = (!is_limited).then_some(1);
         }
         if let Some(&[width, height]) = self.course_size.as_deref() {
@@ -64,6 +65,7 @@ impl CourseArgs {
             settings.adaptive = Some(options.adaptive(batch, tolerance));
         }
         let mut settings = options.apply(settings);
+        settings.stop = stop.apply(settings.stop);
         if let Some(&[x, y, width, height]) = self.course_region.as_deref() {
             settings.region = Some(region([x, y, width, height], &settings)?);
         }

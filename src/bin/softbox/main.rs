@@ -2,11 +2,14 @@
 
 mod args;
 mod bench;
+mod bench_args;
+mod bench_rays;
 mod command_line;
 mod compare;
 mod course_args;
 mod exit;
 mod info;
+mod interrupt;
 mod isa;
 mod job;
 #[cfg(not(feature = "viewer"))]
@@ -57,5 +60,6 @@ fn run(request: Request) -> Result<(), Failure> {
         Request::Info(info) => info::run(&info),
         Request::Compare(compare) => compare::run(&compare),
         Request::Bench(bench) => bench::run(&bench),
+        Request::BenchRays(bench) => bench_rays::run(&bench),
     }
 }

@@ -101,8 +101,10 @@ impl<W: Write> Progress<W> {
         let _ = self.out.flush();
     }
 
-    /// Removes the bar, so that the next message starts on an empty line.
+    /// Removes the bar, so that the next message starts on an empty line. What is shown after that
+    /// has a clock of its own.
     pub(crate) fn finish(&mut self) {
+        self.last_shown = None;
         if self.last_width > 0 {
             let _ = write!(self.out, "\r{:1$}\r", "", self.last_width);
             let _ = self.out.flush();
@@ -198,6 +200,17 @@ mod tests {
         for (frame, before) in frames[2..].iter().zip(&widths[1..]) {
             assert!(frame.is_empty() || frame.len() >= *before, "{text}");
         }
+    }
+
+    #[test]
+    fn work_that_begins_after_the_end_is_shown_at_once() {
+        let mut bytes = Vec::new();
+        let mut progress = Progress::new(&mut bytes, Style::Lines);
+        progress.update(&at(12.0));
+        progress.finish();
+        progress.update(&at(0.0));
+        let text = String::from_utf8(bytes).unwrap();
+        assert_eq!(text.lines().count(), 2, "{text}");
     }
 
     #[test]

@@ -6,11 +6,13 @@ use std::io::Write;
 #[cfg(feature = "viewer")]
 use std::path::Path;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
-use anyhow::{Context, anyhow};
+#[cfg(feature = "viewer")]
+use anyhow::Context;
+use anyhow::anyhow;
 use softbox::io::picture::{PictureFormat, check_writable, write_linear, write_png};
 use softbox::session::{RenderJob, RenderSession, SessionOptions, SessionStatus, Snapshot};
 use softbox::settings::{RenderSettings, StopRule, View};
@@ -18,6 +20,7 @@ use softbox::settings::{RenderSettings, StopRule, View};
 use crate::args::Reporting;
 use crate::command_line::command_line;
 use crate::exit::{Failure, Status};
+use crate::interrupt;
 use crate::job::Job;
 use crate::open::open;
 use crate::place_camera::place_camera;
@@ -110,18 +113,11 @@ struct Outcome {
 /// Renders until the stop rule ends it or Ctrl+C is pressed.
 fn render(job: RenderJob, progress: &mut Progress<std::io::Stderr>) -> Result<Outcome, Failure> {
     let (wake, woken) = channel();
-    let interrupted = Arc::new(AtomicBool::new(false));
-    let (flag, on_interrupt) = (Arc::clone(&interrupted), wake.clone());
-    ctrlc::set_handler(move || {
-        if flag.swap(true, Ordering::Relaxed) {
-            // The second time there is no waiting for files.
-            std::process::exit(i32::from(Status::Interrupted as u8));
-        }
+    let on_interrupt = wake.clone();
+    let interrupted = interrupt::on_interrupt(move || {
         // The receiver lives as long as the render.
         let _ = on_interrupt.send(());
-    })
-    .context("Cannot listen for Ctrl+C")
-    .map_err(Status::Failed.because())?;
+    })?;
     let session = RenderSession::new(SessionOptions { interactive: false }, move || {
         let _ = wake.send(());
     });

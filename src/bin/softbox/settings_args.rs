@@ -7,11 +7,37 @@ use softbox::display::{DisplaySettings, ToneCurve};
 use softbox::image::Region;
 use softbox::math::Isa;
 use softbox::settings::{
-    Adaptive, AdaptiveRule, CameraRule, IntegratorKind, MaxDepth, Mode, RenderSettings, View,
+    Adaptive, AdaptiveRule, CameraRule, IntegratorKind, MaxDepth, Mode, RenderSettings, StopRule,
+    View,
 };
 
 use crate::job::{CameraChoice, FieldOfView};
 use crate::values;
+
+/// When a render ends, whichever comes first.
+#[derive(Args, Clone, Debug, Default, PartialEq)]
+pub(crate) struct StopArgs {
+    /// Samples for each pixel (the most of them, with adaptive sampling)
+    #[arg(short = 's', long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) spp: Option<u32>,
+    /// Stop after this many seconds
+    #[arg(long, value_name = "SECONDS", value_parser = values::positive)]
+    pub(crate) time_limit: Option<f64>,
+    /// Stop at this estimated relative error of the picture
+    #[arg(long, value_name = "X", value_parser = values::positive)]
+    pub(crate) target_error: Option<f64>,
+}
+
+impl StopArgs {
+    /// `stop` with everything that was given in its place.
+    pub(crate) fn apply(&self, stop: StopRule) -> StopRule {
+        StopRule {
+            samples_per_pixel: self.spp.or(stop.samples_per_pixel),
+            seconds: self.time_limit,
+            relative_error: self.target_error,
+        }
+    }
+}
 
 /// The options that decide what is rendered; every setting of the viewer has one.
 #[derive(Args, Clone, Debug, Default, PartialEq)]
@@ -22,9 +48,6 @@ pub(crate) struct SettingsArgs {
     /// Render only this part, in pixels from the top left
     #[arg(long, value_name = "X,Y,W,H", value_parser = values::region)]
     pub(crate) region: Option<Region>,
-    /// Samples for each pixel (the most of them, with adaptive sampling)
-    #[arg(short = 's', long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
-    pub(crate) spp: Option<u32>,
     /// Samples for each area light [default: 1]
     #[arg(short = 'l', long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) light_samples: Option<u32>,
@@ -49,12 +72,6 @@ pub(crate) struct SettingsArgs {
     /// Seed of the random numbers [default: 0]
     #[arg(long, value_name = "N")]
     pub(crate) seed: Option<u64>,
-    /// Stop after this many seconds
-    #[arg(long, value_name = "SECONDS", value_parser = values::positive)]
-    pub(crate) time_limit: Option<f64>,
-    /// Stop at this estimated relative error of the picture
-    #[arg(long, value_name = "X", value_parser = values::positive)]
-    pub(crate) target_error: Option<f64>,
     /// What to show: render, normals, geometric-normals, albedo, depth, cost, samples or noise
     #[arg(long, value_parser = values::named::<View>)]
     pub(crate) view: Option<View>,
@@ -147,9 +164,6 @@ impl SettingsArgs {
         set(&mut settings.threads, self.threads);
         set(&mut settings.view, self.view);
         settings.isa = self.isa.or(settings.isa);
-        settings.stop.samples_per_pixel = self.spp.or(settings.stop.samples_per_pixel);
-        settings.stop.seconds = self.time_limit;
-        settings.stop.relative_error = self.target_error;
         if let Some((batch, tolerance)) = self.adaptive {
             settings.adaptive = Some(self.adaptive(batch, tolerance));
         }

@@ -28,6 +28,8 @@ pub(super) struct Picture {
     summary: FilmSummary,
     backdrop: Option<Preview>,
     seconds: f64,
+    /// Processor time of the workers.
+    cpu_seconds: f64,
     counts: PathCounts,
     /// Samples that every open pixel has.
     done: u32,
@@ -64,6 +66,7 @@ impl Picture {
             summary: FilmSummary::default(),
             backdrop: None,
             seconds: 0.0,
+            cpu_seconds: 0.0,
             counts: PathCounts::default(),
             done: 0,
             last_pass: None,
@@ -98,6 +101,7 @@ impl Picture {
             job: &self.job,
             generation: self.generation,
             seconds: self.seconds,
+            cpu_seconds: self.cpu_seconds,
         }
     }
 
@@ -229,6 +233,7 @@ impl Picture {
         let limit = left.map(|left| left + GRACE * settings.stop.seconds.unwrap_or(0.0) + GRACE);
         let is_over =
             || stop() || limit.is_some_and(|limit| started.elapsed().as_secs_f64() >= limit);
+        let busy = workers.cpu_seconds();
         let (counts, is_complete) = render_pass(
             workers,
             &tracer,
@@ -238,6 +243,7 @@ impl Picture {
             &is_over,
         );
         self.counts += counts;
+        self.cpu_seconds += workers.cpu_seconds() - busy;
         let elapsed = started.elapsed().as_secs_f64();
         self.seconds += elapsed;
         self.pass_seconds += elapsed;
@@ -293,6 +299,7 @@ impl Picture {
         status.samples_mean = self.summary.samples as f64 / self.summary.pixels.max(1) as f64;
         status.samples_target = self.job.settings.stop.samples_per_pixel;
         status.seconds = self.seconds;
+        status.cpu_seconds = self.cpu_seconds;
         status.relative_error = self.summary.relative_error;
         status.counts = self.counts;
         status.samples_per_second = self.counts.camera_rays as f64 / self.seconds.max(1e-9);

@@ -225,15 +225,64 @@ fn wrong_usage_is_refused_with_a_reason() {
 
 #[test]
 fn a_bench_says_what_it_measures() {
-    let Request::Bench(bench) = request("softbox bench --rays --kinds shadow1 city a.dae") else {
+    let Request::BenchRays(bench) = request("softbox bench --rays --kinds shadow1 city a.dae")
+    else {
         panic!("no bench");
     };
     assert_eq!(bench.scenes, ["city", "a.dae"]);
     assert_eq!(bench.protocol.threads, [1, 2]);
     assert_eq!(bench.protocol.size, (512, 384));
     assert_eq!(bench.protocol.kinds, [crate::ray_bench::Kind::Shadow1]);
-    wrong("softbox bench city");
     wrong("softbox bench --rays --threads 0");
     wrong("softbox bench --rays --size 512");
     wrong("softbox bench --rays --kinds bounce3");
+}
+
+#[test]
+fn a_bench_of_error_takes_the_settings_of_a_render() {
+    let bench = |line: &str| match request(line) {
+        Request::Bench(bench) => bench,
+        other => panic!("{line}: {other:?}"),
+    };
+    let plain = bench("softbox bench");
+    let settings = plain.render_settings();
+    assert_eq!((settings.width, settings.height), (480, 360));
+    assert_eq!(
+        (plain.seeds, plain.spp.to_string().as_str()),
+        (5, "1,2,4,8,16,32,64")
+    );
+    assert_eq!(plain.modes(), [Mode::Best]);
+    assert_eq!(plain.chosen_reference_mode(), Mode::Importance);
+    assert_eq!(plain.chosen_reference_spp(), 1024);
+
+    let line =
+        "softbox bench a.dae --compare importance,best -m 2 --size 32x24 --seed 9 -t 1 -s 2,8";
+    let chosen = bench(line);
+    let settings = chosen.render_settings();
+    assert_eq!((settings.max_depth, settings.seed), (MaxDepth(2), 9));
+    assert_eq!((settings.threads, settings.width), (1, 32));
+    assert_eq!(chosen.modes(), [Mode::Importance, Mode::Best]);
+    let other = bench("softbox bench --mode importance");
+    assert_eq!(other.chosen_reference_mode(), Mode::Best);
+
+    for (line, reason) in [
+        ("softbox bench --compare best,best", "twice"),
+        (
+            "softbox bench --mode best --compare best,hemisphere",
+            "--mode",
+        ),
+        ("softbox bench --spp 0", "1..64"),
+        ("softbox bench --seeds 0", "seeds"),
+        ("softbox bench a b --reference r.exr", "one scene"),
+        ("softbox bench a --reference-noise 1e-5", "--reference"),
+        (
+            "softbox bench a --reference r.exr --reference-spp 64",
+            "--reference",
+        ),
+        ("softbox bench a --view depth", "--view"),
+        ("softbox bench a --region 900,0,5,5", "region"),
+        ("softbox bench a --target-error 0.1", "--target-error"),
+    ] {
+        assert!(wrong(line).contains(reason), "{line}: {}", wrong(line));
+    }
 }

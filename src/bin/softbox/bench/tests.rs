@@ -1,100 +1,124 @@
-use std::collections::HashMap;
+use softbox::math::Isa;
+use softbox::settings::Mode;
+use softbox::study::{LevelFigures, PowerLaw};
 
-use glam::Vec3;
-use softbox::bvh::{BvhKind, BvhSettings};
-use softbox::geometry::{Aggregate, Hit, Shapes};
-use softbox::math::Ray;
+use super::plot;
+use super::reference::ReferenceFacts;
+use super::report::{Method, SceneReport};
+use super::table;
 
-use crate::ray_bench::mesh::{add_box, bumps, geodesic, knot, serpent};
-use crate::ray_bench::result::Mismatches;
-use crate::ray_bench::{Exact, Random, median};
-
-/// Whether every edge is used once in each direction.
-fn is_closed(shapes: &Shapes) -> bool {
-    let mut edges = HashMap::new();
-    for t in &shapes.triangles {
-        for (a, b) in [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])] {
-            *edges.entry((a, b)).or_insert(0) += 1;
-        }
-    }
-    edges
-        .iter()
-        .all(|(&(a, b), &n)| n == 1 && edges.get(&(b, a)) == Some(&1))
-}
-
-#[test]
-fn the_closed_meshes_are_closed_and_have_their_size() {
-    let ball = geodesic(7, |d| 1.0 + bumps(d, 0.01));
-    assert_eq!((ball.triangles.len(), ball.positions.len()), (980, 492));
-    assert!(is_closed(&ball));
-    let knot = knot(50, 7, 0.0);
-    assert_eq!(knot.triangles.len(), 700);
-    assert!(is_closed(&knot));
-}
-
-#[test]
-fn the_serpent_has_its_size() {
-    assert_eq!(serpent().triangles.len(), 100_000);
-}
-
-#[test]
-fn a_closed_box_has_twelve_triangles_and_an_open_one_ten() {
-    for (is_open, triangles) in [(false, 12), (true, 10)] {
-        let mut shapes = Shapes::default();
-        add_box(&mut shapes, Vec3::NEG_ONE, Vec3::ONE, is_open);
-        assert_eq!(shapes.triangles.len(), triangles);
-        let at_front = |t: &&[u32; 3]| t.iter().all(|i| shapes.positions[*i as usize].z == 1.0);
-        let front = shapes.triangles.iter().filter(at_front).count();
-        assert_eq!(front, if is_open { 0 } else { 2 });
+fn level(samples_per_pixel: u32, rel_mse: f64) -> LevelFigures {
+    let cpu_seconds = 0.1 * f64::from(samples_per_pixel);
+    LevelFigures {
+        samples_per_pixel,
+        seeds: 5,
+        cpu_seconds,
+        wall_seconds: cpu_seconds,
+        rays: 3e6,
+        samples: 1e6,
+        rel_mse,
+        rel_mse_trimmed: rel_mse,
+        mse: rel_mse,
+        mean_ratio: 1.0,
+        mean_ratio_interval: Some([0.99, 1.01]),
+        efficiency: (rel_mse > 0.0).then(|| 1.0 / (rel_mse * cpu_seconds)),
+        efficiency_interval: None,
     }
 }
 
+fn report(levels: Vec<LevelFigures>) -> SceneReport {
+    SceneReport {
+        scene: "box".to_owned(),
+        width: 4,
+        height: 3,
+        max_depth: "5".to_owned(),
+        threads: 1,
+        isa: Isa::Portable,
+        load_seconds: 0.0,
+        build_seconds: 0.0,
+        first_pass_seconds: 0.0,
+        reference: ReferenceFacts {
+            file: None,
+            mode: Some(Mode::Importance.name()),
+            samples_per_pixel: Some(64),
+            rel_mse: 1e-4,
+            agreement: Some(0.5),
+            cpu_seconds: 1.0,
+        },
+        methods: vec![Method {
+            mode: Mode::Best.name(),
+            levels,
+            power_law: Some(PowerLaw {
+                slope: -1.0,
+                slope_error: Some(0.01),
+                intercept: -3.0,
+            }),
+            seconds_to: Vec::new(),
+        }],
+        comparisons: Vec::new(),
+        is_complete: true,
+        command: "softbox bench box".to_owned(),
+    }
+}
+
+/// Pixels of the first curve's colour within the columns of `part` of the width.
+fn coloured(pixels: &[[u8; 3]], part: std::ops::Range<f64>) -> Vec<usize> {
+    let (width, _) = plot::SIZE;
+    let columns = (part.start * width as f64) as usize..(part.end * width as f64) as usize;
+    let curve = |i: &usize| pixels[*i] == [0, 114, 178] && columns.contains(&(i % width));
+    (0..pixels.len()).filter(curve).map(|i| i / width).collect()
+}
+
 #[test]
-fn other_hits_are_counted() {
-    let at = |t: f32| Hit {
-        t,
-        primitive: 3,
-        ..Hit::MISS
-    };
-    let expected = [at(1.0), at(1.0), Hit::MISS, Hit::MISS, at(1.0), at(1.0)];
-    let found = [
-        at(1.00005),
-        Hit::MISS,
-        at(1.0),
-        Hit::MISS,
-        at(1.001),
-        at(f32::NAN),
+fn a_falling_curve_is_drawn_falling_between_its_axes() {
+    let levels = vec![
+        level(1, 0.1),
+        level(4, 0.025),
+        level(16, 0.0),
+        level(64, 0.0015),
     ];
-    let mismatches = Mismatches::of_closest(&expected, &found);
-    assert_eq!((mismatches.hit_or_miss, mismatches.distance), (2, 2));
-    let occluded = [true, false, false, true, true, true];
-    assert_eq!(Mismatches::of_any(&expected, &occluded).hit_or_miss, 2);
+    let pixels = plot::draw(&[report(levels)]).unwrap();
+    assert_eq!(pixels.len(), plot::SIZE.0 * plot::SIZE.1);
+    let mean = |rows: Vec<usize>| rows.iter().sum::<usize>() / rows.len().max(1);
+    let (left, right) = (coloured(&pixels, 0.1..0.3), coloured(&pixels, 0.75..0.97));
+    assert!(left.len() > 100 && right.len() > 100);
+    assert!(mean(left) + 200 < mean(right));
+    // Letters and numbers beside the vertical axis and below the other one.
+    let (width, height) = plot::SIZE;
+    let dark = |i: &usize| pixels[*i].iter().all(|&c| c < 100);
+    let at_left = (0..pixels.len()).filter(|i| i % width < 120).filter(dark);
+    assert!(at_left.count() > 500);
+    let below = (0..pixels.len())
+        .filter(|i| i / width > height - 80)
+        .filter(dark);
+    assert!(below.count() > 500);
 }
 
 #[test]
-fn the_median_is_in_the_middle() {
-    let of = |values: &[f64]| median(values.iter().copied());
-    assert_eq!(of(&[3.0, 1.0, 2.0]), 2.0);
-    assert_eq!(of(&[4.0, 1.0, 2.0, 3.0]), 2.5);
-    assert!(of(&[]).is_nan());
+fn nothing_to_draw_is_told() {
+    let error = plot::draw(&[report(vec![level(1, -1.0)])]).unwrap_err();
+    assert!(error.to_string().contains("no point"), "{error}");
 }
 
 #[test]
-fn double_precision_needs_no_tree() {
-    let shapes = knot(60, 20, 0.0);
-    let mut random = Random::new(5);
-    let rays: Vec<Ray> = (0..2000)
-        .map(|_| Ray::new(random.direction() * 0.8, random.direction()))
-        .collect();
-    let hits = |kind| {
-        let settings = BvhSettings {
-            kind,
-            ..BvhSettings::default()
-        };
-        Exact(&Aggregate::build(shapes.clone(), settings)).closest_hits(&rays)
+fn the_table_marks_what_cannot_be_believed() {
+    let mut doubtful = report(vec![level(1, 0.1), level(4, -1e-6)]);
+    let text = |report: &SceneReport| {
+        let mut out = Vec::new();
+        table::write(&mut out, report).unwrap();
+        String::from_utf8(out).unwrap()
     };
-    let (all, by_tree) = (hits(BvhKind::None), hits(BvhKind::Sah));
-    assert_eq!(all, by_tree);
-    let met = all.iter().filter(|hit| !hit.is_miss()).count();
-    assert!((200..1800).contains(&met), "{met}");
+    let told = text(&doubtful);
+    assert!(told.contains("its halves agree (p = 0.50)"), "{told}");
+    assert!(told.contains("below the reference's noise"), "{told}");
+    assert!(told.contains("slope -1.000 ± 0.010"), "{told}");
+    assert_eq!(doubtful.warning(), None);
+    doubtful.reference.agreement = Some(1e-5);
+    doubtful.is_complete = false;
+    let told = text(&doubtful);
+    assert!(
+        told.contains("DO NOT AGREE") && told.contains("interrupted"),
+        "{told}"
+    );
+    assert!(doubtful.warning().unwrap().contains("p = 1.0e-5"));
 }

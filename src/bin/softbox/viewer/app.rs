@@ -13,6 +13,7 @@ use super::bvh_view::BvhView;
 use super::command::{Binding, Command};
 use super::document::{Document, Resolution};
 use super::engine::Engine;
+use super::error_curve::ErrorCurve;
 use super::event_log::EventLog;
 use super::files::Files;
 use super::inspector::{PickInfo, Picker, PixelValues, pixel_values};
@@ -49,6 +50,7 @@ pub(super) struct ViewState {
     pub(super) navigation: Navigation,
     pub(super) bvh: BvhView,
     pub(super) rays: RayLog,
+    pub(super) error: ErrorCurve,
     pixel: Option<PixelValues>,
     surface: Option<PickInfo>,
     title: String,
@@ -138,6 +140,7 @@ impl App {
         panels::pixel::show(ui, self.view.pixel.as_ref(), self.view.surface.as_ref());
         let facts = self.view.bvh.facts();
         panels::bvh::show(ui, &mut self.view.bvh, facts.as_ref());
+        panels::error::show(ui, &mut self.view.error, commands);
         let latency = self.view.latency.summary();
         panels::statistics::show(
             ui,
@@ -251,6 +254,11 @@ impl eframe::App for App {
             .frame(UiFrame::NONE)
             .show(ui, |ui| self.picture(ui, &mut commands));
         self.small_windows(&ctx, &bindings, &mut commands);
+        let shown = self.view.viewport.frame().map(|frame| &frame.snapshot);
+        let is_held = self.engine.status().is_held();
+        if let Err(sentence) = self.view.error.follow(&ctx, shown, is_held) {
+            self.windows.messages.fail(sentence);
+        }
         for command in commands {
             self.execute(&ctx, command);
         }

@@ -14,6 +14,12 @@ pub(super) enum Command {
     OpenPath(PathBuf),
     /// Type a path.
     AskPath,
+    /// Choose a finished picture to hold the running one against.
+    ChooseReference,
+    /// Hold the running picture against this one.
+    ReadReference(PathBuf),
+    /// Hold it against none.
+    ForgetReference,
     /// Read the file again.
     Reload,
     /// Stop reading; the old scene stays.

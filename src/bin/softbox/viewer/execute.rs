@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use eframe::egui::{Context, ViewportCommand};
 use softbox::color::Rgb;
+use softbox::io::picture::PictureFormat;
 use softbox::scene::Scene;
 use softbox::session::SessionState;
 use softbox::settings::View;
@@ -21,6 +22,11 @@ use super::viewport::RegionTool;
 /// Half a stop for each press.
 const EXPOSURE_STEP: f32 = 0.5;
 
+/// True for files that can be a reference, by their name.
+fn is_linear_picture(path: &Path) -> bool {
+    PictureFormat::from_path(path).is_some_and(PictureFormat::is_linear)
+}
+
 impl App {
     /// Carries out one command.
     pub(super) fn execute(&mut self, ctx: &Context, command: Command) {
@@ -34,6 +40,9 @@ impl App {
                 self.files.ask_for_file(folder);
             }
             Command::OpenPath(path) => self.open(&path, false),
+            Command::ChooseReference => self.files.ask_for_reference(),
+            Command::ReadReference(path) => self.read_reference(ctx, path),
+            Command::ForgetReference => self.view.error.forget_reference(),
             Command::AskPath => self.windows.ask_path(),
             Command::Reload => self.reload(),
             Command::CancelLoading => {
@@ -136,6 +145,14 @@ impl App {
         }
     }
 
+    /// Begins to read a picture that the running one is held against.
+    fn read_reference(&mut self, ctx: &Context, path: PathBuf) {
+        self.view.error.path = path.display().to_string();
+        if let Err(sentence) = self.view.error.read(ctx, path) {
+            self.windows.messages.fail(sentence);
+        }
+    }
+
     fn reload(&mut self) {
         if let Some(path) = self.document.scene.path.clone() {
             self.open(&path, true);
@@ -147,8 +164,10 @@ impl App {
     /// Takes note of what the threads that work with files have done.
     pub(super) fn take_file_events(&mut self, ctx: &Context) {
         let dropped = ctx.input(|i| i.raw.dropped_files.first().map(|f| f.path().to_owned()));
-        if let Some(path) = dropped {
-            self.open(&path, false);
+        match dropped {
+            Some(path) if is_linear_picture(&path) => self.read_reference(ctx, path),
+            Some(path) => self.open(&path, false),
+            None => {}
         }
         let path = self.document.scene.path.clone();
         if self.preferences.watches_files != self.files.is_watching() {
@@ -170,6 +189,11 @@ impl App {
                     self.windows.ask_path();
                 }
                 FileEvent::Chosen(path) => self.open(&path, false),
+                FileEvent::ReferenceChosen(path) => {
+                    if !path.as_os_str().is_empty() {
+                        self.read_reference(ctx, path);
+                    }
+                }
                 FileEvent::Changed => self.reload(),
                 FileEvent::Written(Ok(path)) => {
                     self.log.say(&format!("written {}", path.display()));

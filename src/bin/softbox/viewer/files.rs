@@ -19,6 +19,8 @@ pub(super) enum FileEvent {
     Load(LoadEvent),
     /// The file dialog chose this file.
     Chosen(PathBuf),
+    /// The file dialog chose this picture; empty when it was closed or is not there.
+    ReferenceChosen(PathBuf),
     /// A picture was written to this path, without extension, or not for this reason.
     Written(Result<PathBuf, String>),
     /// The open file has changed.
@@ -96,7 +98,7 @@ impl Files {
         let mut events: Vec<FileEvent> = self.inbox.try_iter().collect();
         for event in &events {
             match event {
-                FileEvent::Chosen(_) => self.has_dialog = false,
+                FileEvent::Chosen(_) | FileEvent::ReferenceChosen(_) => self.has_dialog = false,
                 FileEvent::Load(_) | FileEvent::Written(_) | FileEvent::Changed => {}
             }
         }
@@ -111,9 +113,6 @@ impl Files {
 
     /// Shows the system's file dialog, which may not exist.
     pub(super) fn ask_for_file(&mut self, folder: Option<&Path>) {
-        if self.has_dialog {
-            return;
-        }
         let mut dialog = rfd::FileDialog::new()
             .set_title("Open a scene")
             .add_filter("COLLADA", &["dae"])
@@ -121,13 +120,29 @@ impl Files {
         if let Some(folder) = folder {
             dialog = dialog.set_directory(folder);
         }
+        self.show_dialog(dialog, FileEvent::Chosen);
+    }
+
+    /// The same for a finished picture.
+    pub(super) fn ask_for_reference(&mut self) {
+        let dialog = rfd::FileDialog::new()
+            .set_title("Compare with a finished picture")
+            .add_filter("Linear pictures", &["exr", "hdr", "pfm"])
+            .add_filter("All files", &["*"]);
+        self.show_dialog(dialog, FileEvent::ReferenceChosen);
+    }
+
+    fn show_dialog(&mut self, dialog: rfd::FileDialog, event: fn(PathBuf) -> FileEvent) {
+        if self.has_dialog {
+            return;
+        }
         let (sender, wake) = (self.sender.clone(), self.wake());
         let thread = std::thread::Builder::new().name("file dialog".to_owned());
         self.has_dialog = thread
             .spawn(move || {
                 // An empty path stands for a dialog that was closed or is not there.
                 let chosen = dialog.pick_file().unwrap_or_default();
-                drop(sender.send(FileEvent::Chosen(chosen)));
+                drop(sender.send(event(chosen)));
                 wake();
             })
             .is_ok();

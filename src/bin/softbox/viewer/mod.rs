@@ -12,6 +12,7 @@ mod bvh_view;
 mod command;
 mod document;
 mod engine;
+mod error_curve;
 mod event_log;
 mod execute;
 mod files;
@@ -31,6 +32,8 @@ mod probe;
 mod projection;
 mod provenance;
 mod ray_log;
+mod reference_picture;
+mod scorer;
 mod shown;
 mod snapshot_file;
 #[cfg(test)]

@@ -4,6 +4,7 @@
 pub(super) mod bvh;
 pub(super) mod camera;
 pub(super) mod display;
+pub(super) mod error;
 pub(super) mod key_sheet;
 pub(super) mod menu;
 pub(super) mod message;

@@ -34,7 +34,7 @@ const PLANE: &str = r##"<?xml version="1.0"?>
 </visual_scene></library_visual_scenes>
 <scene><instance_visual_scene url="#s"/></scene></COLLADA>"##;
 
-fn drop_file(harness: &mut Harness<'_, App>, path: &Path) {
+pub(super) fn drop_file(harness: &mut Harness<'_, App>, path: &Path) {
     let dropped = Arc::new(Dropped(path.to_owned()));
     harness.input_mut().dropped_files.push(dropped);
     harness.step();

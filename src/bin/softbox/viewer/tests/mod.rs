@@ -1,6 +1,7 @@
 //! The complete application, driven by labels, keys and pointer, without a display.
 
 mod display;
+mod error_curve;
 mod files;
 mod keys;
 mod panels;

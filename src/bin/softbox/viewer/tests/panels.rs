@@ -131,7 +131,13 @@ fn every_input_has_a_name() {
     wait_for_picture(&mut harness);
     let ctx = harness.ctx.clone();
     harness.state_mut().execute(&ctx, Command::ToggleBvh);
-    for section in ["Camera", "Picture size", "Machine", "Statistics"] {
+    for section in [
+        "Camera",
+        "Picture size",
+        "Machine",
+        "Error curve",
+        "Statistics",
+    ] {
         harness
             .get_all_by_label(section)
             .last()

@@ -3,12 +3,12 @@ use std::io::Write;
 use anyhow::Context;
 use softbox::math::Isa;
 
-use crate::args::BenchArgs;
+use crate::args::RaysArgs;
 use crate::exit::{Failure, Status};
 use crate::ray_bench::{SCENES, SceneResult, contest, ours, subject, write_table};
 
 /// Measures the tracer and prints the figures on standard output.
-pub(crate) fn run(args: &BenchArgs) -> Result<(), Failure> {
+pub(crate) fn run(args: &RaysArgs) -> Result<(), Failure> {
     let mut scenes: Vec<&str> = args.scenes.iter().map(String::as_str).collect();
     if scenes.is_empty() {
         scenes.extend(SCENES);
