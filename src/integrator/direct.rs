@@ -86,6 +86,14 @@ impl DirectPlan {
         self.samples.len()
     }
 
+    /// The weight of each sample when all lights share them.
+    pub(super) fn any_light_weight(&self) -> Option<f32> {
+        match self.samples.first() {
+            Some(&DirectSample::AnyLight { weight }) => Some(weight),
+            _ => None,
+        }
+    }
+
     /// True when some samples are directions of the hemisphere.
     pub(super) fn samples_hemisphere(&self) -> bool {
         matches!(self.samples.first(), Some(DirectSample::Hemisphere { .. }))

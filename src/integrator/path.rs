@@ -5,6 +5,7 @@ use crate::bsdf::{Bsdf, Lobe};
 use crate::camera::RayCamera;
 use crate::color::Rgb;
 use crate::geometry::Hit;
+use crate::light::ParallelogramLight;
 use crate::math::{Frame, Ray, offset_origin};
 use crate::sampling::{PathSampler, Slot, power_heuristic, uniform_disk};
 use crate::scene::{PreparedScene, SurfaceInteraction};
@@ -140,16 +141,22 @@ pub struct PathTracer<'a> {
     pub(super) plan: DirectPlan,
     /// Diffuse vertices leave direct light to the light samples.
     light_samples_suffice: bool,
+    /// The light that all light samples go to, if that is a parallelogram, and their weight.
+    pub(super) only_parallelogram: Option<(ParallelogramLight<'a>, f32)>,
 }
 
 impl<'a> PathTracer<'a> {
     /// The path tracer of `scene` seen by `camera`.
     pub fn new(scene: &'a PreparedScene, camera: &'a RayCamera, settings: PathSettings) -> Self {
+        let plan = DirectPlan::new(scene, &settings);
+        let only_parallelogram = (plan.any_light_weight())
+            .and_then(|weight| Some((scene.only_parallelogram()?, weight)));
         Self {
             scene,
             camera,
             settings,
-            plan: DirectPlan::new(scene, &settings),
+            plan,
+            only_parallelogram,
             light_samples_suffice: scene.light_samples_suffice(),
         }
     }

@@ -239,9 +239,14 @@ impl AreaLight {
 
     /// True for a single parallelogram: of several parts one that is near may be chosen rarely.
     pub(super) fn is_bounded(&self) -> bool {
+        self.only_parallelogram().is_some()
+    }
+
+    /// The parallelogram that is all of the light and is not sampled evenly by area.
+    pub(super) fn only_parallelogram(&self) -> Option<&Parallelogram> {
         match &self.parts[..] {
-            [only] => self.warped(only).is_some(),
-            _ => false,
+            [only] => self.warped(only),
+            _ => None,
         }
     }
 

@@ -26,7 +26,7 @@ pub(super) struct Parallelogram {
     dual_1: Vec3,
     dual_2: Vec3,
     /// Square of the distance below which points are near.
-    near2: f32,
+    pub(super) near2: f32,
 }
 
 impl Parallelogram {
@@ -46,6 +46,11 @@ impl Parallelogram {
             dual_2: normal.cross(edge_1) / area,
             near2: NEAR * NEAR * longer2,
         })
+    }
+
+    /// Dual to the edges: their dot products with `p - corner` are the coordinates of p.
+    pub(super) fn duals(&self) -> [Vec3; 2] {
+        [self.dual_1, self.dual_2]
     }
 
     /// The corners at (0, 0), (1, 0), (0, 1), (1, 1) of the unit square.

@@ -2,6 +2,11 @@ use glam::Vec2;
 
 use super::ONE_MINUS_EPSILON;
 
+/// Neither a sum of weights nor its inverse may overflow.
+pub(super) const LEAST_SUM: f32 = 1e-30;
+/// As [`LEAST_SUM`].
+pub(super) const MOST_SUM: f32 = 1e30;
+
 /// A density over the unit square that is bilinear between its values at the corners.
 ///
 /// Pharr, Jakob and Humphreys 2023, "Physically Based Rendering", section A.5.2.
@@ -17,8 +22,7 @@ impl Bilinear {
     pub fn new(weights: [f32; 4]) -> Option<Self> {
         let [w00, w10, w01, w11] = weights;
         let sum = (w00 + w10) + (w01 + w11);
-        // Neither the sum nor its inverse may overflow.
-        (1e-30..1e30).contains(&sum).then(|| Self {
+        (LEAST_SUM..MOST_SUM).contains(&sum).then(|| Self {
             shares: [w00, w10, w01, w11].map(|w| w / sum),
         })
     }

@@ -68,6 +68,15 @@ pub(super) fn index_in_pair(pair: usize, index: u32) -> u32 {
     sum
 }
 
+/// The bits that take part in each step of Pascal's triangle.
+pub(super) const PASCAL: [u32; 5] = [
+    0x0000_FFFF,
+    0x00FF_00FF,
+    0x0F0F_0F0F,
+    0x3333_3333,
+    0x5555_5555,
+];
+
 /// Point `index` of the (0,2)-sequence of Sobol: of any 2ᵏ points from an aligned index on, each
 /// elementary interval of area 2⁻ᵏ holds one.
 ///
@@ -76,11 +85,11 @@ pub(super) fn index_in_pair(pair: usize, index: u32) -> u32 {
 /// with Pascal's triangle modulo 2, in five steps since that matrix is a Kronecker power.
 pub(super) fn point(index: u32) -> [u32; 2] {
     let mut y = index;
-    y ^= (y >> 16) & 0x0000_FFFF;
-    y ^= (y >> 8) & 0x00FF_00FF;
-    y ^= (y >> 4) & 0x0F0F_0F0F;
-    y ^= (y >> 2) & 0x3333_3333;
-    y ^= (y >> 1) & 0x5555_5555;
+    y ^= (y >> 16) & PASCAL[0];
+    y ^= (y >> 8) & PASCAL[1];
+    y ^= (y >> 4) & PASCAL[2];
+    y ^= (y >> 2) & PASCAL[3];
+    y ^= (y >> 1) & PASCAL[4];
     [index, y]
 }
 

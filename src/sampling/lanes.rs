@@ -1,3 +1,5 @@
+use super::ONE_MINUS_EPSILON;
+use super::bilinear::{LEAST_SUM, MOST_SUM};
 use super::warp::{COS_EIGHTH, LATTICE_CELL, SIN_EIGHTH};
 use crate::math::{Lanes, Vec3Lanes};
 
@@ -17,6 +19,50 @@ pub fn cosine_hemisphere_lanes<L: Lanes>(u: [L; 2]) -> Vec3Lanes<L> {
 #[inline(always)]
 fn centred<L: Lanes>(u: L) -> L {
     L::splat(2.0) * u - L::splat(1.0) + L::splat(LATTICE_CELL)
+}
+
+/// Eight of [`super::Bilinear`], the same bits.
+#[derive(Clone, Copy, Debug)]
+pub struct BilinearLanes<L> {
+    shares: [L; 4],
+}
+
+impl<L: Lanes> BilinearLanes<L> {
+    /// The densities, and where they are usable.
+    #[inline(always)]
+    pub fn new([w00, w10, w01, w11]: [L; 4]) -> (Self, L::Mask) {
+        let sum = (w00 + w10) + (w01 + w11);
+        let is_usable = sum.ge(L::splat(LEAST_SUM)) & sum.lt(L::splat(MOST_SUM));
+        let shares = [w00 / sum, w10 / sum, w01 / sum, w11 / sum];
+        (Self { shares }, is_usable)
+    }
+
+    /// As [`super::Bilinear::sample`].
+    #[inline(always)]
+    pub fn sample(&self, u: [L; 2]) -> [L; 2] {
+        let [s00, s10, s01, s11] = self.shares;
+        let y = sample_linear(u[1], s00 + s10, s01 + s11);
+        [sample_linear(u[0], mix(s00, s01, y), mix(s10, s11, y)), y]
+    }
+
+    /// As [`super::Bilinear::pdf`].
+    #[inline(always)]
+    pub fn pdf(&self, place: [L; 2]) -> L {
+        let [s00, s10, s01, s11] = self.shares;
+        let [x, y] = place;
+        L::splat(4.0) * mix(mix(s00, s01, y), mix(s10, s11, y), x)
+    }
+}
+
+#[inline(always)]
+fn mix<L: Lanes>(a: L, b: L, t: L) -> L {
+    (L::splat(1.0) - t) * a + t * b
+}
+
+#[inline(always)]
+fn sample_linear<L: Lanes>(u: L, a: L, b: L) -> L {
+    let x = u * (a + b) / (a + mix(a * a, b * b, u).sqrt());
+    x.min(L::splat(ONE_MINUS_EPSILON))
 }
 
 #[inline(always)]

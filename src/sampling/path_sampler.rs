@@ -1,7 +1,11 @@
+mod lanes;
+
 use glam::Vec2;
 
 use super::digital_net::{index_in_pair, point};
 use super::scramble::{mix_32, mix_64, scramble, shuffle};
+
+pub use lanes::PathSamplerLanes;
 
 /// What a random number is used for at one bounce; together with the bounce it is the dimension.
 ///
@@ -103,15 +107,13 @@ impl PathSampler {
 
     /// Two numbers in [0, 1), on the lattice of multiples of 2⁻²⁴ (never 1).
     pub fn get_2d(&self, bounce: u32, slot: Slot) -> Vec2 {
-        // 2²⁰ slots for each of 4096 bounces; no path is longer.
-        let dimension = bounce.rotate_left(20) ^ slot.index();
-        let seed_x = mix_32(self.key[0] ^ dimension.wrapping_mul(0x9E37_79B1));
+        let seed_x = mix_32(self.key[0] ^ dimension(bounce, slot));
         let seed_y = mix_32(self.key[1] ^ seed_x);
         let index = match slot.points(bounce) {
             Points::Pair(pair) => index_in_pair(pair, self.index),
             Points::Shuffled => shuffle(self.index, mix_32(seed_x ^ seed_y)),
             Points::Independent => {
-                let x = mix_32(seed_x ^ self.index.wrapping_mul(0x85EB_CA77));
+                let x = mix_32(seed_x ^ self.index.wrapping_mul(INDEPENDENT));
                 return Vec2::new(unit(x), unit(mix_32(seed_y ^ x)));
             }
         };
@@ -125,9 +127,20 @@ impl PathSampler {
     }
 }
 
+/// What multiplies the number of the sample where points are independent.
+const INDEPENDENT: u32 = 0x85EB_CA77;
+
+/// The spacing 2⁻²⁴ of all numbers.
+const LATTICE: f32 = 1.0 / 16_777_216.0;
+
+/// A number for each slot of each bounce: 2²⁰ slots for each of 4096 bounces; no path is longer.
+fn dimension(bounce: u32, slot: Slot) -> u32 {
+    (bounce.rotate_left(20) ^ slot.index()).wrapping_mul(0x9E37_79B1)
+}
+
 /// The first 24 binary digits, of which the first is the lowest bit.
 fn unit(digits: u32) -> f32 {
-    (digits.reverse_bits() >> 8) as f32 * (1.0 / 16_777_216.0)
+    (digits.reverse_bits() >> 8) as f32 * LATTICE
 }
 
 #[cfg(test)]

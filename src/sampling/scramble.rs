@@ -1,10 +1,16 @@
 //! Hashes: mixers, and the nested scrambling that randomizes low-discrepancy points.
 
+/// The factors of [`mix_32`].
+pub(super) const MIX_32: [u32; 2] = [0x7FEB_352D, 0x846C_A68B];
+
+/// The factors of [`scramble`].
+pub(super) const LAINE_KARRAS: [u32; 3] = [0x3D20_ADEA, 0x0552_6C56, 0x53A2_2864];
+
 /// A bijective 32-bit mixer with full avalanche (Wellons 2018, "Prospecting for Hash Functions",
 /// the function with the lowest bias of two rounds).
 pub(super) const fn mix_32(mut x: u32) -> u32 {
-    x = (x ^ (x >> 16)).wrapping_mul(0x7FEB_352D);
-    x = (x ^ (x >> 15)).wrapping_mul(0x846C_A68B);
+    x = (x ^ (x >> 16)).wrapping_mul(MIX_32[0]);
+    x = (x ^ (x >> 15)).wrapping_mul(MIX_32[1]);
     x ^ (x >> 16)
 }
 
@@ -23,11 +29,11 @@ pub(super) fn mix_64(mut x: u64) -> u64 {
 /// Burley 2020, "Practical Hash-based Owen Scrambling", its constants by Vegdahl 2021, "Building a
 /// Better LK Hash".
 pub(super) fn scramble(mut x: u32, seed: u32) -> u32 {
-    x ^= x.wrapping_mul(0x3D20_ADEA);
+    x ^= x.wrapping_mul(LAINE_KARRAS[0]);
     x = x.wrapping_add(seed);
     x = x.wrapping_mul((seed >> 16) | 1);
-    x ^= x.wrapping_mul(0x0552_6C56);
-    x ^ x.wrapping_mul(0x53A2_2864)
+    x ^= x.wrapping_mul(LAINE_KARRAS[1]);
+    x ^ x.wrapping_mul(LAINE_KARRAS[2])
 }
 
 /// The numbers below 2³² in another order that keeps every aligned block of 2ᵏ numbers together:

@@ -3,10 +3,13 @@ use std::f32::consts::FRAC_1_PI;
 use glam::Vec3;
 
 use super::shade::{Group, Shade};
-use crate::light::{LightSample, LightSampleContext};
+use crate::light::{
+    ContextLanes, LightSample, LightSampleContext, LightSampleLanes, ParallelogramLight,
+};
 use crate::math::{
     LANES, Lanes, Ray, SHADOW_T_MAX, Vec3Array, Vec3Lanes, gamma, offset_origin_lanes,
 };
+use crate::sampling::Slot;
 
 /// A light sample for each of eight vertices.
 #[derive(Debug)]
@@ -39,6 +42,24 @@ impl LightSamples {
         factor: [0.0; LANES],
     };
 
+    /// The samples of one light that are there, of those `lanes`.
+    #[inline(always)]
+    fn set_all<L: Lanes>(
+        &mut self,
+        lanes: u32,
+        light: &ParallelogramLight<'_>,
+        found: &LightSampleLanes<L>,
+        weight: f32,
+    ) {
+        self.lanes = L::bits(found.is_there) & lanes;
+        self.wi = found.wi.store();
+        self.point = found.point.store();
+        self.radiance = Vec3Lanes::<L>::splat(light.radiance()).store();
+        self.normal = Vec3Lanes::<L>::splat(light.normal()).store();
+        found.pdf.store(&mut self.pdf);
+        (L::splat(weight) / found.pdf).store(&mut self.factor);
+    }
+
     #[inline(always)]
     fn set(&mut self, lane: usize, sample: &LightSample, weight: f32) {
         let bit = 1 << lane;
@@ -68,9 +89,23 @@ impl Shade<'_, '_> {
         if self.tracer.plan.samples_hemisphere() {
             return self.direct_light_one_by_one(group.first, group.lanes, &group.surface.store());
         }
+        let from = ContextLanes {
+            point: group.surface.point,
+            normal: group.lit_normal(),
+        };
         for number in 0..self.tracer.plan.len() as u32 {
-            let (point, normal) = (group.surface.point.store(), group.lit_normal().store());
-            let samples = self.light_samples(group.first, group.lanes, (&point, &normal), number);
+            let mut samples = LightSamples::NONE;
+            let mut rest = group.lanes;
+            if let Some((light, weight)) = self.tracer.only_parallelogram {
+                let u = (group.sampler).get_2d(self.bounce, Slot::LightPoint(number));
+                let found = light.sample(&from, u);
+                samples.set_all(group.lanes, &light, &found, weight);
+                rest &= L::bits(found.is_near);
+            }
+            if rest != 0 {
+                let places = (&from.point.store(), &from.normal.store());
+                self.sample_one_by_one(&mut samples, group.first, rest, places, number);
+            }
             let made = if samples.lanes == 0 {
                 0
             } else {
@@ -80,14 +115,15 @@ impl Shade<'_, '_> {
         }
     }
 
-    fn light_samples(
+    /// Light samples of those of the eight that are in `lanes`.
+    fn sample_one_by_one(
         &self,
+        samples: &mut LightSamples,
         first: usize,
         lanes: u32,
         (points, normals): (&Vec3Array, &Vec3Array),
         number: u32,
-    ) -> LightSamples {
-        let mut samples = LightSamples::NONE;
+    ) {
         for lane in (0..LANES).filter(|lane| lanes >> lane & 1 == 1) {
             let id = self.paths.states[first + lane].id as usize;
             let from = LightSampleContext {
@@ -99,7 +135,6 @@ impl Shade<'_, '_> {
                 samples.set(lane, &sample, weight);
             }
         }
-        samples
     }
 
     /// Queues shadow rays as [`super::PathTracer::shadow_ray`] makes them; returns their number.

@@ -16,7 +16,7 @@ impl Shade<'_, '_> {
         if self.bounce + 1 >= self.tracer.settings.max_depth.0 && !shares_emission {
             return;
         }
-        let mut local = cosine_hemisphere_lanes(self.numbers::<L>(group, Slot::Scatter));
+        let mut local = cosine_hemisphere_lanes(group.sampler.get_2d(self.bounce, Slot::Scatter));
         let zero = L::splat(0.0);
         let size = local.z;
         local.z = L::select(group.wo_z.lt(zero), local.z.neg(), local.z);
@@ -30,7 +30,6 @@ impl Shade<'_, '_> {
         let mut throughput = group.throughput * weight;
         alive = alive & throughput.max_element().gt(zero);
         if self.bounce >= 1 {
-            let [u, _] = self.numbers::<L>(group, Slot::Roulette);
             let most = if self.bounce + 1 < TRAPPED_AFTER {
                 1.0
             } else {
@@ -38,12 +37,17 @@ impl Shade<'_, '_> {
             };
             let wanted = L::splat(SURVIVAL_OF_THROUGHPUT) * throughput.max_element();
             let survival = wanted.max(L::splat(MIN_SURVIVAL)).min(L::splat(most));
-            alive = alive & u.lt(survival);
-            throughput = Vec3Lanes::new(
-                throughput.x / survival,
-                throughput.y / survival,
-                throughput.z / survival,
-            );
+            let at_risk = L::bits(alive & survival.lt(L::splat(1.0))) & group.lanes;
+            // Whoever is sure to live needs no number, and is divided by 1.
+            if at_risk != 0 {
+                let [u, _] = group.sampler.get_2d(self.bounce, Slot::Roulette);
+                alive = alive & u.lt(survival);
+                throughput = Vec3Lanes::new(
+                    throughput.x / survival,
+                    throughput.y / survival,
+                    throughput.z / survival,
+                );
+            }
         }
         let origin = offset_origin_lanes(
             group.surface.departure,
@@ -89,21 +93,5 @@ impl Shade<'_, '_> {
                 scatter_pdf: pdf[lane],
             });
         }
-    }
-
-    /// Two random numbers of each path of a group.
-    #[inline(always)]
-    fn numbers<L: Lanes>(&self, group: &Group<L>, slot: Slot) -> [L; 2] {
-        let mut numbers = [[0.5; LANES]; 2];
-        for (lane, state) in self.paths.states[group.first..]
-            .iter()
-            .enumerate()
-            .take(LANES)
-        {
-            let u = self.samplers[state.id as usize].get_2d(self.bounce, slot);
-            numbers[0][lane] = u.x;
-            numbers[1][lane] = u.y;
-        }
-        [L::load(&numbers[0]), L::load(&numbers[1])]
     }
 }

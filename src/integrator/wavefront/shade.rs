@@ -7,7 +7,7 @@ use super::{Path, PathCounts, PathTracer, Vertex};
 use crate::color::Rgb;
 use crate::geometry::Hit;
 use crate::math::{Frame, FrameLanes, LANES, LaneKernel, Lanes, Vec3Array, Vec3Lanes};
-use crate::sampling::PathSampler;
+use crate::sampling::{PathSampler, PathSamplerLanes};
 
 /// One bounce of a range of paths: emission is added to their radiance, rays of direct light to the
 /// queues, and the paths that go on to `next`.
@@ -35,6 +35,7 @@ pub(super) struct Group<L: Lanes> {
     /// Cosine between shading normal and the way that the path came.
     pub(super) wo_z: L,
     pub(super) throughput: Vec3Lanes<L>,
+    pub(super) sampler: PathSamplerLanes<L>,
 }
 
 impl<L: Lanes> Group<L> {
@@ -82,6 +83,8 @@ impl<'s> Shade<'_, 's> {
             directions.set(lane, ray.direction);
             throughputs.set(lane, state.throughput);
         }
+        let states = self.paths.states[first..].iter();
+        let samplers = states.map(|state| self.samplers[state.id as usize]);
         let wo = Vec3Lanes::load(&directions).neg();
         let agree = wo.dot(surface.geometric_normal) * wo.dot(surface.shading_normal);
         surface.shading_normal = Vec3Lanes::select(
@@ -96,6 +99,7 @@ impl<'s> Shade<'_, 's> {
             wo_z: surface.shading_normal.dot(wo),
             surface,
             throughput: Vec3Lanes::load(&throughputs),
+            sampler: PathSamplerLanes::new(samplers),
         }
     }
 

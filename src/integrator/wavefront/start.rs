@@ -2,7 +2,7 @@ use super::paths::{FULL, PathState, Paths};
 use super::{PathId, PathTracer};
 use crate::color::Rgb;
 use crate::math::{LANES, LaneKernel, Lanes, Ray};
-use crate::sampling::{PathSampler, Slot};
+use crate::sampling::{PathSampler, PathSamplerLanes, Slot};
 use glam::Vec3;
 
 /// The camera rays of a batch, as [`PathTracer::start`] makes them, for cameras without a lens.
@@ -23,12 +23,13 @@ impl LaneKernel for Start<'_, '_> {
         let groups = self.ids.chunks(LANES).zip(self.samplers.chunks(LANES));
         for (group, (ids, samplers)) in groups.enumerate() {
             let mut position = [[0.0; LANES]; 2];
-            for (lane, (id, sampler)) in ids.iter().zip(samplers).enumerate() {
-                let u = sampler.get_2d(0, Slot::Pixel);
-                position[0][lane] = id.pixel[0] as f32 + u.x;
-                position[1][lane] = id.pixel[1] as f32 + u.y;
+            for (lane, id) in ids.iter().enumerate() {
+                position[0][lane] = id.pixel[0] as f32;
+                position[1][lane] = id.pixel[1] as f32;
             }
-            let position = [L::load(&position[0]), L::load(&position[1])];
+            let [x, y] =
+                PathSamplerLanes::<L>::new(samplers.iter().copied()).get_2d(0, Slot::Pixel);
+            let position = [L::load(&position[0]) + x, L::load(&position[1]) + y];
             let directions = camera.directions_lanes(position).store();
             for lane in 0..ids.len() {
                 self.paths.rays.push(Ray::new(eye, directions.get(lane)));

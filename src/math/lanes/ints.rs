@@ -31,6 +31,9 @@ pub trait IntLanes:
     /// Bits moved down by `BY`, the sign from above; `BY` is in 0..32.
     fn sar<const BY: i32>(self) -> Self;
 
+    /// As [`u32::reverse_bits`].
+    fn reverse_bits(self) -> Self;
+
     /// The numbers as an array.
     #[inline(always)]
     fn to_array(self) -> [u32; LANES] {

@@ -60,4 +60,9 @@ impl IntLanes for PortableInts {
                 .map(|value| (value.cast_signed() >> BY).cast_unsigned()),
         )
     }
+
+    #[inline(always)]
+    fn reverse_bits(self) -> Self {
+        Self(self.0.map(u32::reverse_bits))
+    }
 }

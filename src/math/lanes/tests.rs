@@ -73,6 +73,7 @@ impl LaneKernel for All {
             i.sar::<31>(),
         ];
         all.extend(ints.map(L::Ints::to_array));
+        assert_eq!(i.reverse_bits().to_array(), BITS.map(u32::reverse_bits));
         all.push(L::select_ints(a.lt(b), i, j).to_array());
         all
     }
