@@ -31,6 +31,6 @@ pub use build::Progress;
 pub use leaves::{Leaves, PacketLeaves, Work};
 pub use packet::{GROUPS, PACKET, PacketRays, PerRay};
 pub use settings::{BvhKind, BvhQuality, BvhSettings};
-pub use slab::{SlabRay, T_FAR, padded, padded_four};
+pub use slab::{FAR_MARGIN, SlabRay, T_FAR, padded, padded_four};
 pub use stats::BvhStats;
 pub use tree::{BLOCK, Bvh, LeafBlocks, NO_PRIMITIVE, NodeId};

@@ -18,7 +18,7 @@ const PAD: f32 = gamma(16);
 /// Factor on the far end of the interval: the primitive's own test may be off by a few roundings of
 /// numbers as large as its distance too. Ize 2013, "Robust BVH Ray Traversal", derives 1 + 2γ(3)
 /// for the roundings of the box test alone.
-pub(super) const FAR_MARGIN: f32 = 1.0 + 2.0 * gamma(8);
+pub const FAR_MARGIN: f32 = 1.0 + 2.0 * gamma(8);
 
 /// A step of this fraction of a number's size changes it.
 const ULP: f32 = f32::EPSILON;

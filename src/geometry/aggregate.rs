@@ -4,6 +4,7 @@ use std::sync::Arc;
 use super::block::{Block, ID_LIMIT};
 use super::leaf::{LeafOrder, Query, bounds};
 use super::refine::{refine, refine_meshes};
+use super::sweep::Sweep;
 use super::{Hit, Instance, InstanceStats, Instances, Placement, Shapes};
 use crate::bvh::{BLOCK, Bvh, BvhKind, BvhQuality, BvhSettings, BvhStats, NodeId, Progress, Work};
 use crate::math::{Aabb, Isa, Ray};
@@ -23,8 +24,8 @@ pub struct TraceCounts {
 }
 
 impl TraceCounts {
-    fn add(&mut self, rays: &[Ray], work: Work) {
-        self.rays += rays.len() as u64;
+    fn add(&mut self, rays: usize, work: Work) {
+        self.rays += rays as u64;
         self.box_tests += work.nodes * 8;
         self.primitive_tests += work.blocks * BLOCK as u64;
     }
@@ -46,6 +47,8 @@ pub struct Aggregate {
     pub(super) shapes: Arc<Shapes>,
     pub(super) bvh: Arc<Bvh>,
     pub(super) leaves: Arc<LeafOrder>,
+    /// What small scenes are traced by instead of the tree.
+    pub(super) sweep: Option<Arc<Sweep>>,
     /// What rays can meet besides; `None` for most.
     instances: Option<Arc<Instances>>,
     leaf_size: u32,
@@ -81,10 +84,14 @@ impl Aggregate {
         };
         let (bvh, ids) = Bvh::build_with(shapes.len(), &bounds, &first, progress)?;
         let leaves = LeafOrder::new(&shapes, &bvh, &ids);
+        // The other kinds are there to be compared.
+        let is_best = settings.kind == BvhKind::Sah;
+        let sweep = is_best.then(|| Sweep::new(&shapes)).flatten();
         Some(Self {
             shapes: Arc::new(shapes),
             bvh: Arc::new(bvh),
             leaves: Arc::new(leaves),
+            sweep: sweep.map(Arc::new),
             instances: None,
             leaf_size: settings.leaf_size,
             is_refined: is_refined || settings.kind != BvhKind::Sah,
@@ -135,6 +142,7 @@ impl Aggregate {
             shapes: Arc::clone(&self.shapes),
             bvh: Arc::new(bvh),
             leaves: Arc::new(leaves),
+            sweep: self.sweep.clone(),
             instances: None,
             leaf_size: self.leaf_size,
             is_refined: true,
@@ -149,6 +157,21 @@ impl Aggregate {
     #[must_use]
     pub fn with_isa(self, isa: Isa) -> Self {
         Self { isa, ..self }
+    }
+
+    /// The same, traced by the tree alone, however small the scene is; never changes a hit.
+    #[must_use]
+    pub fn without_sweep(self) -> Self {
+        Self {
+            sweep: None,
+            ..self
+        }
+    }
+
+    /// True if batches of rays are traced by a sweep over all shapes instead of the tree, as in small
+    /// scenes.
+    pub fn is_swept(&self) -> bool {
+        self.sweep.is_some()
     }
 
     /// The instruction set that traces; never changes a hit.
@@ -245,7 +268,7 @@ impl Aggregate {
             hits[i] = query.map_or(Hit::MISS, |query| query.hit);
         };
         let work = self.bvh.traverse_coherent(isa, leaves, rays, answer);
-        counts.add(rays, work);
+        counts.add(rays.len(), work);
         if let Some(instances) = &self.instances {
             instances.closest_hit(isa, rays, hits, counts);
         }
@@ -288,9 +311,21 @@ impl Aggregate {
         &self,
         rays: &[Ray],
         counts: &mut TraceCounts,
-        answer: impl FnMut(usize, Hit),
+        mut answer: impl FnMut(usize, Hit),
     ) {
-        let work = self.trace_shapes::<ANY>(self.isa, rays, answer);
-        counts.add(rays, work);
+        let isa = self.isa;
+        let sweep = self
+            .sweep
+            .as_ref()
+            .filter(|sweep| sweep.is_for::<ANY>(rays.len()));
+        let Some(sweep) = sweep else {
+            let work = self.trace_shapes::<ANY>(isa, rays, answer);
+            counts.add(rays.len(), work);
+            return;
+        };
+        let rest = sweep.trace::<ANY>(isa, rays, &mut answer, counts);
+        let left: Vec<_> = rest.iter().map(|&i| rays[i as usize]).collect();
+        let work = self.trace_shapes::<ANY>(isa, &left, |i, hit| answer(rest[i] as usize, hit));
+        counts.add(rays.len(), work);
     }
 }

@@ -21,6 +21,7 @@ mod refit;
 mod shapes;
 mod sphere;
 mod surface_point;
+mod sweep;
 mod triangle;
 
 pub use aggregate::{Aggregate, TraceCounts};

@@ -4,6 +4,7 @@ use glam::Vec3;
 
 use super::Aggregate;
 use super::leaf::bounds;
+use super::sweep::Sweep;
 
 impl Aggregate {
     /// Moves the vertices of the triangles without building the hierarchy anew; hits are those of a
@@ -28,6 +29,9 @@ impl Aggregate {
             }
         }
         self.is_refined = false;
+        if self.sweep.is_some() {
+            self.sweep = Sweep::new(&self.shapes).map(Arc::new);
+        }
         let leaves = Arc::make_mut(&mut self.leaves);
         Some(leaves.refit(Arc::make_mut(&mut self.bvh), &self.shapes))
     }

@@ -5,6 +5,7 @@ use glam::Vec3;
 /// The direction is of unit length unless the maker says otherwise (shadow rays use the whole
 /// segment as direction, so that `t = 1` is the light). The hit is never stored inside.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct Ray {
     /// Start of the ray, in the space of the scene it is traced against.
     pub origin: Vec3,

@@ -9,4 +9,5 @@ mod packets;
 mod scenes;
 mod selfhit;
 mod structure;
+mod sweep;
 mod watertight;

@@ -63,9 +63,16 @@ pub(crate) fn brute_force(shapes: Shapes) -> Aggregate {
 /// hits, bit for bit, and pass every test.
 pub(crate) fn aggregates(shapes: &Shapes, settings: BvhSettings) -> Vec<(&'static str, Aggregate)> {
     let built = Aggregate::build(shapes.clone(), settings);
-    Isa::available()
-        .map(|isa| (isa.name(), built.clone().with_isa(isa)))
-        .collect()
+    let swept = built.is_swept().then(|| built.clone());
+    let trees =
+        Isa::available().map(|isa| (isa.name(), built.clone().without_sweep().with_isa(isa)));
+    let sweeps = swept.into_iter().flat_map(|swept| {
+        Isa::available().map(move |isa| match isa {
+            Isa::Portable => ("portable sweep", swept.clone().with_isa(isa)),
+            _ => ("sweep", swept.clone().with_isa(isa)),
+        })
+    });
+    trees.chain(sweeps).collect()
 }
 
 pub(crate) fn closest(aggregate: &Aggregate, rays: &[Ray]) -> Vec<Hit> {
