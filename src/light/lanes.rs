@@ -1,8 +1,9 @@
 use glam::Vec3;
 
+use super::near_lanes::NearParallelogram;
 use super::parallelogram::Parallelogram;
 use super::{AreaLight, Light};
-use crate::math::{Lanes, Vec3Lanes};
+use crate::math::{LANES, Lanes, Vec3Lanes};
 use crate::sampling::BilinearLanes;
 
 /// What [`super::LightSampleContext`] is for one surface point.
@@ -19,8 +20,6 @@ pub struct ContextLanes<L> {
 pub struct LightSampleLanes<L: Lanes> {
     /// Where there is a sample.
     pub is_there: L::Mask,
-    /// Where the light is near; there is no sample there then, and a single one must be taken.
-    pub is_near: L::Mask,
     /// Unit vectors to the points.
     pub wi: Vec3Lanes<L>,
     /// The points.
@@ -29,21 +28,26 @@ pub struct LightSampleLanes<L: Lanes> {
     pub pdf: L,
 }
 
-/// A light of one parallelogram, whose samples are taken eight at a time where it is not near.
+/// A light of one parallelogram, whose samples are taken eight at a time.
 #[derive(Clone, Copy, Debug)]
 pub struct ParallelogramLight<'a> {
     light: &'a AreaLight,
     shape: &'a Parallelogram,
+    near: NearParallelogram,
 }
 
 impl Light {
     /// The light as such a one, if it is.
     pub fn as_parallelogram(&self) -> Option<ParallelogramLight<'_>> {
         match self {
-            Self::Area(light) => Some(ParallelogramLight {
-                light,
-                shape: light.only_parallelogram()?,
-            }),
+            Self::Area(light) => {
+                let shape = light.only_parallelogram()?;
+                Some(ParallelogramLight {
+                    light,
+                    shape,
+                    near: NearParallelogram::new(shape),
+                })
+            }
             _ => None,
         }
     }
@@ -64,21 +68,22 @@ impl ParallelogramLight<'_> {
     #[inline(always)]
     pub fn sample<L: Lanes>(&self, from: &ContextLanes<L>, u: [L; 2]) -> LightSampleLanes<L> {
         let shape = self.shape;
-        let corners = shape.corners();
-        let (density, is_usable) = BilinearLanes::new([
-            weight(from, corners[0]),
-            weight(from, corners[1]),
-            weight(from, corners[2]),
-            weight(from, corners[3]),
-        ]);
-        let place = density.sample(u);
-        let point = at(shape, place);
+        let is_near = self.is_near(from.point);
+        let near = L::bits(is_near);
+        let all_near = near == (1 << LANES) - 1;
+        let (mut point, mut pdf, mut is_there) = if all_near {
+            self.near.sample(shape, from, u)
+        } else {
+            sample_far(shape, from, u)
+        };
+        if near != 0 && !all_near {
+            let (near_point, near_pdf, near_there) = self.near.sample(shape, from, u);
+            point = Vec3Lanes::select(is_near, near_point, point);
+            pdf = L::select(is_near, near_pdf, pdf);
+            is_there = (near_there & is_near) | L::without(is_there, is_near);
+        }
         let segment = point - from.point;
-        let distance2 = segment.length_squared();
-        let normal = Vec3Lanes::splat(shape.normal);
-        let height = normal.dot(segment).abs();
-        let distance = distance2.sqrt();
-        let pdf = density.pdf(place) * distance2 * distance / (L::splat(shape.area) * height);
+        let distance = segment.length();
         let wi = Vec3Lanes::new(
             segment.x / distance,
             segment.y / distance,
@@ -86,7 +91,7 @@ impl ParallelogramLight<'_> {
         );
         let zero = L::splat(0.0);
         let infinity = L::splat(f32::INFINITY);
-        let cos = normal.dot(wi).neg();
+        let cos = Vec3Lanes::splat(shape.normal).dot(wi).neg();
         let cos = if self.light.is_two_sided() {
             cos.abs()
         } else {
@@ -94,10 +99,8 @@ impl ParallelogramLight<'_> {
         };
         let reaches = distance.gt(zero) & distance.lt(infinity) & cos.gt(zero);
         let is_sane = pdf.gt(zero) & pdf.lt(infinity);
-        let is_near = self.is_near(from.point);
         LightSampleLanes {
-            is_there: L::without(is_usable & reaches & is_sane, is_near),
-            is_near,
+            is_there: is_there & reaches & is_sane,
             wi,
             point,
             pdf,
@@ -107,14 +110,46 @@ impl ParallelogramLight<'_> {
     #[inline(always)]
     fn is_near<L: Lanes>(&self, from: Vec3Lanes<L>) -> L::Mask {
         let shape = self.shape;
-        let from_corner = from - Vec3Lanes::splat(shape.corner);
         let (zero, one) = (L::splat(0.0), L::splat(1.0));
-        let [dual_1, dual_2] = shape.duals();
-        let x = from_corner.dot(Vec3Lanes::splat(dual_1)).max(zero).min(one);
-        let y = from_corner.dot(Vec3Lanes::splat(dual_2)).max(zero).min(one);
-        let away = from - at(shape, [x, y]);
-        away.length_squared().lt(L::splat(shape.near2))
+        let [x, y] = place_of(shape, from);
+        let nearest = at(shape, [x.max(zero).min(one), y.max(zero).min(one)]);
+        (from - nearest).length_squared().lt(L::splat(shape.near2))
     }
+}
+
+/// Points and densities as [`super::corner_warp::CornerWarp::sample`] gives them, and where there are
+/// any.
+#[inline(always)]
+fn sample_far<L: Lanes>(
+    shape: &Parallelogram,
+    from: &ContextLanes<L>,
+    u: [L; 2],
+) -> (Vec3Lanes<L>, L, L::Mask) {
+    let corners = shape.corners();
+    let (density, is_usable) = BilinearLanes::new([
+        weight(from, corners[0]),
+        weight(from, corners[1]),
+        weight(from, corners[2]),
+        weight(from, corners[3]),
+    ]);
+    let place = density.sample(u);
+    let point = at(shape, place);
+    let segment = point - from.point;
+    let distance2 = segment.length_squared();
+    let height = Vec3Lanes::splat(shape.normal).dot(segment).abs();
+    let pdf = density.pdf(place) * distance2 * distance2.sqrt() / (L::splat(shape.area) * height);
+    (point, pdf, is_usable)
+}
+
+/// As [`Parallelogram::place_of`].
+#[inline(always)]
+pub(super) fn place_of<L: Lanes>(shape: &Parallelogram, point: Vec3Lanes<L>) -> [L; 2] {
+    let from_corner = point - Vec3Lanes::splat(shape.corner);
+    let [dual_1, dual_2] = shape.duals();
+    [
+        from_corner.dot(Vec3Lanes::splat(dual_1)),
+        from_corner.dot(Vec3Lanes::splat(dual_2)),
+    ]
 }
 
 /// What a corner sends, both cosines counted, as [`super::corner_warp::CornerWarp`] weighs it.

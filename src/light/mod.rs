@@ -11,6 +11,7 @@ mod directional;
 mod environment;
 mod lanes;
 mod merge;
+mod near_lanes;
 mod parallelogram;
 mod part;
 mod point;

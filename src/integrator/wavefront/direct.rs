@@ -95,16 +95,12 @@ impl Shade<'_, '_> {
         };
         for number in 0..self.tracer.plan.len() as u32 {
             let mut samples = LightSamples::NONE;
-            let mut rest = group.lanes;
-            if let Some((light, weight)) = self.tracer.only_parallelogram {
+            if let Some((light, weight)) = &self.tracer.only_parallelogram {
                 let u = (group.sampler).get_2d(self.bounce, Slot::LightPoint(number));
-                let found = light.sample(&from, u);
-                samples.set_all(group.lanes, &light, &found, weight);
-                rest &= L::bits(found.is_near);
-            }
-            if rest != 0 {
+                samples.set_all(group.lanes, light, &light.sample(&from, u), *weight);
+            } else {
                 let places = (&from.point.store(), &from.normal.store());
-                self.sample_one_by_one(&mut samples, group.first, rest, places, number);
+                self.sample_one_by_one(&mut samples, group.first, group.lanes, places, number);
             }
             let made = if samples.lanes == 0 {
                 0
