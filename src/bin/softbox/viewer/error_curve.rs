@@ -13,6 +13,8 @@ use super::scorer::{Finding, Scorer};
 
 /// Points closer than this on the axis of time take each other's place.
 const STEP: f64 = 1.05;
+/// Samples in each pixel from which their spread tells the error; few of them often agree by chance.
+const FEWEST_SAMPLES: f64 = 8.0;
 /// Points from which a slope is told.
 const FEWEST_FOR_SLOPE: usize = 4;
 
@@ -131,7 +133,8 @@ impl ErrorCurve {
         match self.reference.clone() {
             Some(reference) => self.scorer(ctx)?.score(Arc::clone(snapshot), reference),
             None => {
-                if let Some(error) = snapshot.relative_error {
+                let is_enough = snapshot.samples_mean >= FEWEST_SAMPLES;
+                if let Some(error) = snapshot.relative_error.filter(|_| is_enough) {
                     self.add(snapshot.cpu_seconds, error * error);
                 }
             }

@@ -1,6 +1,6 @@
 //! The error of the picture against its processor time.
 
-use eframe::egui::{self, DragValue, Label, RichText, TextEdit, Ui};
+use eframe::egui::{self, DragValue, TextEdit, Ui};
 use egui_plot::{GridInput, GridMark, HLine, Line, Plot, PlotPoints, Points};
 use softbox::study::PowerLaw;
 
@@ -95,15 +95,15 @@ fn facts(ui: &mut Ui, curve: &ErrorCurve) {
         ui.weak("no error yet");
         return;
     };
-    let mut text = format!(
+    ui.monospace(format!(
         "relMSE {:.2e} after {:.2} cpu s",
         last.rel_mse, last.cpu_seconds
-    );
+    ));
     if let Some(law) = curve.power_law() {
-        text += &format!(", slope {:.2}", law.slope);
-        text += &reached(&law, curve.target, (last.cpu_seconds, last.rel_mse));
+        let now = (last.cpu_seconds, last.rel_mse);
+        let target = reached(&law, curve.target, now);
+        ui.monospace(format!("slope {:.2}{target}", law.slope));
     }
-    ui.add(Label::new(RichText::new(text).monospace()).wrap());
 }
 
 /// When the target is reached, or since when.
