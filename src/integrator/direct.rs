@@ -137,7 +137,7 @@ impl PathTracer<'_> {
                 let sample = light.sample_part(self.scene.shapes(), part, from, numbers)?;
                 let pdf = choice.pmf * sample.pdf;
                 (pdf > 0.0)
-                    .then(|| LightSample { pdf, ..sample })
+                    .then_some(LightSample { pdf, ..sample })
                     .and_then(|sample| self.shadow_ray(path, vertex, &sample, weight))
             }
             DirectSample::Hemisphere { weight } => {
