@@ -1,6 +1,6 @@
 use glam::Vec2;
 
-use super::distribution_1d::{invert, usable_weight};
+use super::distribution_1d::{guide, invert, usable_weight};
 use super::{Distribution1d, ONE_MINUS_EPSILON};
 
 /// Chooses points of the unit square with a density that is constant in each cell of a grid.
@@ -12,6 +12,8 @@ pub struct Distribution2d {
     rows: Distribution1d,
     /// For each row its running sums with a leading 0, scaled to end at 1; all 0 in an empty row.
     columns: Vec<f64>,
+    /// The guides of all rows.
+    guides: Vec<u32>,
 }
 
 impl Distribution2d {
@@ -40,10 +42,12 @@ impl Distribution2d {
             }));
             row_sums.push(total);
         }
+        let guides = columns.chunks_exact(width + 1).flat_map(guide).collect();
         Some(Self {
             width,
             rows: Distribution1d::from_usable(row_sums.into_iter())?,
             columns,
+            guides,
         })
     }
 
@@ -51,7 +55,7 @@ impl Distribution2d {
     pub fn sample_continuous(&self, u: Vec2) -> (Vec2, f32) {
         let (row, _, remapped_row) = self.rows.sample(u.y);
         let u_column = f64::from(u.x).clamp(0.0, f64::from(ONE_MINUS_EPSILON));
-        let (column, remapped) = invert(self.row(row), u_column);
+        let (column, remapped) = invert(self.row(row), self.guide(row), u_column);
         let uv = Vec2::new(
             in_cell(column, remapped, self.width),
             in_cell(row, remapped_row, self.rows.len()),
@@ -67,6 +71,11 @@ impl Distribution2d {
     fn row(&self, row: usize) -> &[f64] {
         let stride = self.width + 1;
         &self.columns[row * stride..(row + 1) * stride]
+    }
+
+    fn guide(&self, row: usize) -> &[u32] {
+        let stride = self.width + 1;
+        &self.guides[row * stride..(row + 1) * stride]
     }
 
     fn cell_pdf(&self, column: usize, row: usize) -> f32 {

@@ -138,7 +138,11 @@ impl Node {
     /// the sphere around the child subtends. Here the cosine at the surface is bounded in the same
     /// way, and both are then mixed with the cosines of the middle, which are nearer the mean.
     pub(super) fn importance(&self, point: Vec3, normal: Vec3) -> [f32; WIDTH] {
-        std::array::from_fn(|i| self.importance_of(i, point, normal))
+        let mut importance = [0.0; WIDTH];
+        for (i, importance) in importance.iter_mut().enumerate() {
+            *importance = self.importance_of(i, point, normal);
+        }
+        importance
     }
 
     /// No branches, so that the compiler does several children at once.
@@ -191,9 +195,10 @@ fn narrowed((cos_a, sin_a): (f32, f32), (cos_b, sin_b): (f32, f32)) -> f32 {
 
 /// The bound of a cosine, mixed with the cosine of the middle where that is positive.
 fn mixed(bound: f32, middle: f32) -> f32 {
-    // The bound is 0 where nothing is in front; rounding must not let the other bring it back.
-    let mean = bound + (middle.clamp(0.0, bound.max(0.0)) - bound) * LightCluster::MIDDLE;
-    mean.max(0.0)
+    // Where the bound is 0, nothing is in front: rounding must not let the other bring it back.
+    let bound = bound.max(0.0);
+    // Not `clamp`: its check of the limits is a branch.
+    bound + (middle.max(0.0).min(bound) - bound) * LightCluster::MIDDLE
 }
 
 fn axis(stored: i16) -> f32 {
