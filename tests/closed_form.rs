@@ -10,9 +10,10 @@ use glam::{DMat4, DVec3};
 use softbox::camera::Camera;
 use softbox::color::Rgb;
 use softbox::image::Image;
+use softbox::integrator::PathSettings;
 use softbox::scene::{EnvironmentMap, LightKind, Scene, SceneBuilder, Surface};
 use softbox::settings::{MaxDepth, Mode};
-use support::measure::{camera, measure, prepared, settings};
+use support::measure::{camera, measure, prepared, replicated, settings};
 use support::scenes::{glowing, inside_out, sphere_mesh};
 
 const DEPTHS: [MaxDepth; 5] = [
@@ -335,8 +336,8 @@ fn c8_form_factors_of_unit_squares() {
     }
 }
 
-#[test]
-fn c9_environment_with_a_gradient() {
+/// A plane under a sky that grows brighter towards the zenith, its camera, and what it sees.
+fn under_a_gradient() -> (Scene, Camera, f64) {
     let (a, b) = (0.5, 1.5);
     let rows = 512_usize;
     let row = |i: usize| {
@@ -352,10 +353,40 @@ fn c9_environment_with_a_gradient() {
         image: Arc::new(Image::from_pixels(8, rows, pixels)),
     });
     let irradiance = PI * a + 2.0 * PI / 3.0 * b;
-    let scene = prepared(&builder.finish());
+    (builder.finish(), camera, 0.5 / PI * irradiance)
+}
+
+/// The squared error of n samples falls faster than 1 / n, in every mode: the samples are
+/// low-discrepancy points and no number is used twice.
+#[test]
+fn the_error_falls_faster_than_with_independent_samples() {
+    const REPLICATES: u32 = 1000;
+    let (scene, camera, _) = under_a_gradient();
+    let scene = prepared(&scene);
+    for mode in Mode::ALL {
+        let variance = |length: u32| {
+            let settings = PathSettings {
+                replicates: REPLICATES,
+                ..settings(mode, MaxDepth(1))
+            };
+            let estimate = replicated(&scene, &camera, settings, (1, 1), length)[0];
+            estimate.standard_error(0).powi(2) * f64::from(REPLICATES)
+        };
+        let (few, many) = (4_u32, 256_u32);
+        let decades = (f64::from(many) / f64::from(few)).ln();
+        let slope = (variance(many) / variance(few)).ln() / decades;
+        // Each variance is known to √(2 / replicates).
+        let error = (4.0 / f64::from(REPLICATES)).sqrt() / decades;
+        assert!(slope + 4.0 * error < -1.0, "{mode:?}: {slope} ± {error}");
+    }
+}
+
+#[test]
+fn c9_environment_with_a_gradient() {
+    let (scene, camera, exact) = under_a_gradient();
+    let scene = prepared(&scene);
     for mode in Mode::ALL {
         let estimate = measure(&scene, &camera, settings(mode, MaxDepth(1)), 600_000);
-        let exact = 0.5 / PI * irradiance;
         // Rows of constant radiance differ from the gradient by about 1e-5.
         let bound = 4.0 * estimate.standard_error(0) + 3e-5 * exact;
         assert!(

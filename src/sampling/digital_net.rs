@@ -109,15 +109,14 @@ mod tests {
     #[test]
     fn the_second_coordinate_is_pascals_triangle() {
         for j in 0..32_u32 {
-            let mut row = vec![1_u64];
-            for _ in 0..j {
-                row.push(1);
-                for i in (1..row.len() - 1).rev() {
-                    row[i] += row[i - 1];
-                }
-            }
-            let column = (0..32).fold(0, |sum, k| {
-                sum | ((row.get(k).copied().unwrap_or(0) & 1) as u32) << k
+            // Row j, one binomial coefficient from the one before.
+            let row = (0..=u64::from(j)).scan(1_u64, |coefficient, k| {
+                let current = *coefficient;
+                *coefficient = current * (u64::from(j) - k) / (k + 1);
+                Some(current)
+            });
+            let column = row.enumerate().fold(0, |sum, (k, coefficient)| {
+                sum | ((coefficient & 1) as u32) << k
             });
             assert_eq!(point(1 << j)[1], column, "column {j}");
         }

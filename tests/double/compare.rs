@@ -16,6 +16,10 @@ const HEIGHT: u32 = 47;
 /// 10⁻⁴, because shadow rays in single precision miss blockers just before the light's silhouette.
 const FLIP_RATE: f64 = 2e-4;
 
+/// The same for paths of any length between mirrors and glass, whose curves spread rounding: with at
+/// most 3, 5, 8, 12, 20 and 40 bounces the rates are 0, 4 · 10⁻⁵, 1.4, 2.9, 3.6 and 3.6 · 10⁻⁴.
+pub(crate) const ENDLESS_FLIP_RATE: f64 = 5e-4;
+
 pub(crate) fn ray_camera(scene: &PreparedScene, camera: &Camera) -> RayCamera {
     RayCamera::new(camera, WIDTH, HEIGHT, scene.normalization())
 }
@@ -89,8 +93,13 @@ impl Comparison {
 
     /// Few paths part; the others have the same mean up to 10⁻⁵, and all together up to the noise
     /// of those few.
-    #[expect(clippy::print_stdout, reason = "the rates are the result of the test")]
     pub(crate) fn check(&self, name: &str) {
+        self.check_within(name, FLIP_RATE);
+    }
+
+    /// The same with another limit for the share of paths that part.
+    #[expect(clippy::print_stdout, reason = "the rates are the result of the test")]
+    pub(crate) fn check_within(&self, name: &str, flip_rate: f64) {
         let off = self.single / self.double - 1.0;
         let mean = self.difference / self.samples;
         let variance = self.squared_difference / self.samples - mean * mean;
@@ -100,7 +109,7 @@ impl Comparison {
             self.flip_rate()
         );
         assert!(self.double > 0.0, "{name} is black");
-        assert!(self.flip_rate() <= FLIP_RATE, "{name}: {self:?}");
+        assert!(self.flip_rate() <= flip_rate, "{name}: {self:?}");
         assert!(off.abs() < 1e-5, "{name}: off by {off}");
         let noise = 5.0 * error + 1e-5 * self.double / (3.0 * self.samples);
         assert!(mean.abs() < noise, "{name}: {mean} ± {error}");

@@ -7,7 +7,7 @@ use softbox::integrator::{PathSettings, PathTracer};
 use softbox::scene::{Instancing, PrepareSettings};
 use softbox::settings::{MaxDepth, Mode};
 
-use compare::{Comparison, ray_camera};
+use compare::{Comparison, ENDLESS_FLIP_RATE, ray_camera};
 use scenes::View;
 
 const SETTINGS: PathSettings = PathSettings {
@@ -91,7 +91,7 @@ fn shared_meshes() {
 #[test]
 fn every_setting_is_honoured() {
     let view = scenes::mirror_and_glass();
-    let by_depth = [0, 1, 2, u32::MAX].map(|depth| PathSettings {
+    let by_depth = [0, 1, 2, 5].map(|depth| PathSettings {
         max_depth: MaxDepth(depth),
         light_samples: 1,
         ..SETTINGS
@@ -99,6 +99,12 @@ fn every_setting_is_honoured() {
     for settings in by_depth {
         compare(&view, settings, 16).check(&settings.max_depth.to_string());
     }
+    let endless = PathSettings {
+        max_depth: MaxDepth::INFINITE,
+        light_samples: 1,
+        ..SETTINGS
+    };
+    compare(&view, endless, 32).check_within("endless", ENDLESS_FLIP_RATE);
     for mode in Mode::ALL {
         let settings = PathSettings {
             mode,

@@ -96,8 +96,8 @@ pub fn measure(
     blocks(scene, camera, settings, (1, 1), samples)[0]
 }
 
-/// Radiance over each pixel of a picture of `size` pixels: one value of an estimate is the mean of
-/// a replicate of some 64 samples.
+/// Radiance over each pixel of a picture of `size` pixels: each value is the mean of a replicate of
+/// some 64 samples.
 pub fn blocks(
     scene: &PreparedScene,
     camera: &Camera,
@@ -105,39 +105,49 @@ pub fn blocks(
     size: (u32, u32),
     samples: u32,
 ) -> Vec<Estimate> {
-    let camera = RayCamera::new(camera, size.0, size.1, scene.normalization());
-    let replicates = samples / REPLICATE;
-    let length = samples / replicates;
     let settings = PathSettings {
-        replicates,
+        replicates: samples / REPLICATE,
         ..settings
     };
+    let length = samples / settings.replicates;
+    replicated(scene, camera, settings, size, length)
+}
+
+/// The same with `length` samples in each of the replicates of `settings`.
+pub fn replicated(
+    scene: &PreparedScene,
+    camera: &Camera,
+    settings: PathSettings,
+    size: (u32, u32),
+    length: u32,
+) -> Vec<Estimate> {
+    let camera = RayCamera::new(camera, size.0, size.1, scene.normalization());
     let tracer = PathTracer::new(scene, &camera, settings);
-    let replicates_of_a_batch = BATCH_SIZE as u32 / length;
     (0..size.0 * size.1)
         .into_par_iter()
-        .map(|pixel| {
-            let pixel = [pixel % size.0, pixel / size.0];
-            let firsts = (0..replicates)
-                .into_par_iter()
-                .step_by(replicates_of_a_batch as usize);
-            firsts
-                .map(|first| {
-                    let end = replicates.min(first + replicates_of_a_batch);
-                    let ids: Vec<PathId> = (first..end)
-                        .flat_map(|replicate| {
-                            let sample = move |i| i * replicates + replicate;
-                            (0..length).map(move |i| PathId {
-                                pixel,
-                                sample: sample(i),
-                            })
-                        })
-                        .collect();
-                    replicate_means(&tracer, &ids, length as usize)
-                })
-                .reduce(Estimate::default, Estimate::merge)
-        })
+        .map(|pixel| pixel_means(&tracer, [pixel % size.0, pixel / size.0], length))
         .collect()
+}
+
+/// The means of the replicates of one pixel, `length` samples of each.
+fn pixel_means(tracer: &PathTracer<'_>, pixel: [u32; 2], length: u32) -> Estimate {
+    let replicates = tracer.settings.replicates;
+    let of_a_batch = (BATCH_SIZE as u32 / length).max(1);
+    let firsts = (0..replicates).into_par_iter().step_by(of_a_batch as usize);
+    firsts
+        .map(|first| {
+            let end = replicates.min(first + of_a_batch);
+            let ids: Vec<PathId> = (first..end)
+                .flat_map(|replicate| {
+                    (0..length).map(move |i| PathId {
+                        pixel,
+                        sample: i * replicates + replicate,
+                    })
+                })
+                .collect();
+            replicate_means(tracer, &ids, length as usize)
+        })
+        .reduce(Estimate::default, Estimate::merge)
 }
 
 /// The means of every `length` paths.

@@ -87,34 +87,30 @@ fn is_net(points: &[Vec2]) -> bool {
     })
 }
 
+/// Block `block` of `n` samples of one replicate.
+fn block_of(
+    (pixel, bounce, slot): (u32, u32, Slot),
+    (n, block): (u32, u32),
+    (replicate, replicates): (u32, u32),
+) -> Vec<Vec2> {
+    (block * n..(block + 1) * n)
+        .map(|i| i * replicates + replicate)
+        .map(|sample| PathSampler::replicated(9, [pixel, 2], sample, replicates))
+        .map(|numbers| numbers.get_2d(bounce, slot))
+        .collect()
+}
+
 /// Test S17: exact for every two-dimensional slot, any aligned block, and every replicate.
 #[test]
 fn samples_of_a_pixel_fill_all_elementary_intervals() {
-    for bounce in [0, 1, 2, 3, 4, 31] {
-        for slot in SLOTS.into_iter().filter(|&slot| slot != Slot::Roulette) {
-            for (log_n, block, replicates) in [
-                (1, 0, 1),
-                (4, 0, 1),
-                (4, 77, 1),
-                (6, 3, 4),
-                (7, 1, 3),
-                (12, 0, 1),
-            ] {
-                let n = 1 << log_n;
-                for pixel in 0..3 {
-                    for replicate in 0..replicates {
-                        let points: Vec<Vec2> = (block * n..(block + 1) * n)
-                            .map(|i| {
-                                let sample = i * replicates + replicate;
-                                PathSampler::replicated(9, [pixel, 2], sample, replicates)
-                                    .get_2d(bounce, slot)
-                            })
-                            .collect();
-                        assert!(
-                            is_net(&points),
-                            "bounce {bounce}, {slot:?}, {n} from {block}"
-                        );
-                    }
+    let blocks = [(2, 0), (16, 0), (16, 77), (64, 3), (128, 1), (4096, 0)];
+    let slots = SLOTS.into_iter().filter(|&slot| slot != Slot::Roulette);
+    for slot in slots {
+        for (bounce, pixel) in [(0, 0), (1, 1), (2, 2), (3, 3), (4, 4), (31, 5)] {
+            for block in blocks {
+                for replicate in [(0, 1), (0, 3), (2, 3), (3, 4)] {
+                    let points = block_of((pixel, bounce, slot), block, replicate);
+                    assert!(is_net(&points), "{bounce} {slot:?} {block:?} {replicate:?}");
                 }
             }
         }
