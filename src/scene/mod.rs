@@ -9,6 +9,7 @@ mod instancing;
 mod interaction;
 mod lights;
 mod placed_mesh;
+mod plain;
 mod prepare;
 mod prepare_cache;
 mod prepared;
@@ -24,6 +25,7 @@ pub use description::{
 pub use initial_camera::initial_camera;
 pub use instancing::Instancing;
 pub use interaction::SurfaceInteraction;
+pub use plain::{PlainShape, PlainSurfaces};
 pub use prepare::{PrepareProgress, PrepareSettings, prepare, prepare_with};
 pub use prepare_cache::{PrepareCache, PrepareCounts};
 pub use prepared::PreparedScene;

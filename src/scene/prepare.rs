@@ -9,6 +9,7 @@ use super::emitters::{Emitters, EmittingRectangle, SurfaceEmission, emitters};
 use super::instancing::{Instancing, shared};
 use super::lights::{LightTable, light_nodes};
 use super::placed_mesh::PlacedMesh;
+use super::plain::plain_reflectances;
 use super::prepare_cache::PrepareCache;
 use super::prepared::{DARK, FLAT, Owner, PreparedMaterial, Tables};
 use super::shading_normals::NormalRule;
@@ -93,14 +94,16 @@ pub fn prepare_with(
                 .map(|rectangle| rectangle.name.clone()),
         )
         .collect();
+    let materials = materials(scene);
     let tables = Tables {
         normalization,
+        plain: plain_reflectances(&owners, &materials),
         owners,
         owner_of,
         smooth,
         corner_normals,
         shared,
-        materials: materials(scene),
+        materials,
         instance_names,
         lights: table.lights,
         sampled: table.sampled,

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use super::SurfaceInteraction;
 use super::shared_mesh::SharedMesh;
+use super::{PlainSurfaces, SurfaceInteraction};
 use crate::bsdf::Bsdf;
 use crate::color::Rgb;
 use crate::geometry::{Aggregate, Instance, InstanceStats, Shapes};
@@ -49,6 +49,8 @@ pub(super) struct Tables {
     pub(super) owners: Vec<Owner>,
     /// For each primitive that is not shared.
     pub(super) owner_of: Vec<u32>,
+    /// For each owner the reflectance of plain surfaces, see [`PlainSurfaces`].
+    pub(super) plain: Vec<Rgb>,
     /// For each triangle its place in `corner_normals`, or [`FLAT`]; empty when all are flat.
     pub(super) smooth: Vec<u32>,
     pub(super) corner_normals: Vec<[Vec3; 3]>,
@@ -168,17 +170,15 @@ impl PreparedScene {
         }
     }
 
-    /// The reflectance of `primitive` if it is one of the plain surfaces that most paths meet, whose
-    /// shading goes eight at a time: diffuse, not black, without emission, not shared by instances.
-    #[inline]
-    pub fn plain_reflectance(&self, primitive: u32) -> Option<Rgb> {
-        let owner = *self.tables.owner_of.get(primitive as usize)?;
-        let owner = &self.tables.owners[owner as usize];
-        match self.tables.materials[owner.material as usize].bsdf {
-            Bsdf::Diffuse(diffuse) if owner.light == DARK && diffuse.reflectance != Rgb::ZERO => {
-                Some(diffuse.reflectance)
-            }
-            _ => None,
+    /// The plain surfaces of the scene.
+    pub fn plain_surfaces(&self) -> PlainSurfaces<'_> {
+        let tables = &*self.tables;
+        PlainSurfaces {
+            shapes: self.shapes(),
+            owner_of: &tables.owner_of,
+            plain: &tables.plain,
+            smooth: &tables.smooth,
+            corner_normals: &tables.corner_normals,
         }
     }
 

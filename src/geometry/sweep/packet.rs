@@ -253,19 +253,13 @@ fn same_sign<V: Lanes>(u: V, v: V, w: V) -> V::Mask {
 pub(super) fn of_rays<V: Lanes>(rays: [&Ray; LANES]) -> [V; 8] {
     let [a, b, c, d, e, f, g, h] = rays;
     V::transpose([
-        of_ray(a),
-        of_ray(b),
-        of_ray(c),
-        of_ray(d),
-        of_ray(e),
-        of_ray(f),
-        of_ray(g),
-        of_ray(h),
+        V::load_ray(a),
+        V::load_ray(b),
+        V::load_ray(c),
+        V::load_ray(d),
+        V::load_ray(e),
+        V::load_ray(f),
+        V::load_ray(g),
+        V::load_ray(h),
     ])
-}
-
-#[inline(always)]
-fn of_ray<V: Lanes>(ray: &Ray) -> V {
-    let (o, d) = (&ray.origin, &ray.direction);
-    V::load(&[o.x, o.y, o.z, d.x, d.y, d.z, ray.t_min, ray.t_max])
 }

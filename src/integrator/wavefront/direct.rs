@@ -1,14 +1,11 @@
 use std::f32::consts::FRAC_1_PI;
 
-use glam::Vec3;
-
+use super::scatter::rays;
 use super::shade::{Group, Shade};
 use crate::light::{
     ContextLanes, LightSample, LightSampleContext, LightSampleLanes, ParallelogramLight,
 };
-use crate::math::{
-    LANES, Lanes, Ray, SHADOW_T_MAX, Vec3Array, Vec3Lanes, gamma, offset_origin_lanes,
-};
+use crate::math::{LANES, Lanes, SHADOW_T_MAX, Vec3Array, Vec3Lanes, gamma, offset_origin_lanes};
 use crate::sampling::Slot;
 
 /// A light sample for each of eight vertices.
@@ -164,33 +161,15 @@ impl Shade<'_, '_> {
         let target = offset_origin_lanes(point, error, Vec3Lanes::load(&samples.normal), wi.neg());
         let segment = target - origin;
         let direction = Vec3Lanes::select(L::mask_of_bits(samples.infinite), wi, segment);
-        self.queue(
-            group.first,
-            bits,
-            samples.infinite,
-            [&origin.store(), &direction.store(), &contribution.store()],
-        );
-        bits.count_ones()
-    }
-
-    #[inline(always)]
-    fn queue(
-        &mut self,
-        first: usize,
-        lanes: u32,
-        infinite: u32,
-        [origins, directions, contributions]: [&Vec3Array; 3],
-    ) {
-        for lane in (0..LANES).filter(|lane| lanes >> lane & 1 == 1) {
-            let (origin, direction): (Vec3, Vec3) = (origins.get(lane), directions.get(lane));
-            let ray = if infinite >> lane & 1 == 1 {
-                Ray::new(origin, direction)
-            } else {
-                Ray::segment(origin, direction, SHADOW_T_MAX)
-            };
-            let owner = self.paths.states[first + lane].id;
-            self.direct.push_shadow(owner, ray, contributions.get(lane));
+        let infinite = L::mask_of_bits(samples.infinite);
+        let t_max = L::select(infinite, L::splat(f32::INFINITY), L::splat(SHADOW_T_MAX));
+        let rays = rays(origin, direction, [zero, t_max]);
+        let contribution = contribution.store();
+        for lane in (0..LANES).filter(|lane| bits >> lane & 1 == 1) {
+            let owner = self.paths.states[group.first + lane].id;
+            (self.direct).push_shadow(owner, rays[lane].to_ray(), contribution.get(lane));
         }
+        bits.count_ones()
     }
 }
 

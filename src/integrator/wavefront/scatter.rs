@@ -5,7 +5,7 @@ use glam::Vec3;
 use super::super::path::{MIN_SURVIVAL, SURVIVAL_OF_THROUGHPUT, TRAPPED_AFTER, TRAPPED_SURVIVAL};
 use super::paths::{NONE, PathState};
 use super::shade::{Group, Shade};
-use crate::math::{LANES, Lanes, Ray, Vec3Lanes, offset_origin_lanes};
+use crate::math::{LANES, Lanes, Vec3Lanes, offset_origin_lanes};
 use crate::sampling::{Slot, cosine_hemisphere_lanes};
 
 impl Shade<'_, '_> {
@@ -79,12 +79,12 @@ impl Shade<'_, '_> {
         [origin, direction, throughput, from, side]: [Vec3Lanes<L>; 5],
         pdf: L,
     ) {
-        let (origin, direction) = (origin.store(), direction.store());
+        let ends = [L::splat(0.0), L::splat(f32::INFINITY)];
+        let rays = rays(origin, direction, ends);
         let (throughput, pdf) = (throughput.store(), pdf.to_array());
         let (from, side) = (from.store(), side.store());
         for lane in (0..LANES).filter(|lane| lanes >> lane & 1 == 1) {
-            let ray = Ray::new(origin.get(lane), direction.get(lane));
-            self.next.rays.push(ray);
+            self.next.rays.push(rays[lane].to_ray());
             self.next.states.push(PathState {
                 throughput: throughput.get(lane),
                 id: self.paths.states[group.first + lane].id,
@@ -94,4 +94,15 @@ impl Shade<'_, '_> {
             });
         }
     }
+}
+
+/// Eight rays, one in each row, as [`Lanes::to_ray`] takes them.
+#[inline(always)]
+pub(super) fn rays<L: Lanes>(
+    origin: Vec3Lanes<L>,
+    direction: Vec3Lanes<L>,
+    [t_min, t_max]: [L; 2],
+) -> [L; LANES] {
+    let (o, d) = (origin, direction);
+    L::transpose([o.x, o.y, o.z, d.x, d.y, d.z, t_min, t_max])
 }

@@ -53,10 +53,12 @@ impl LaneKernel for Shade<'_, '_> {
     #[inline(always)]
     fn run<L: Lanes>(mut self) {
         let bounces_on = self.bounce < self.tracer.settings.max_depth.0;
+        let plain = self.tracer.scene.plain_surfaces();
+        let mut found = Found::NONE;
         for first in self.range.clone().step_by(LANES) {
             let end = (first + LANES).min(self.range.end);
             let (rays, hits) = (&self.paths.rays[first..end], &self.hits[first..end]);
-            let found = Found::new(self.tracer.scene, rays, hits);
+            found.look_up(&plain, rays, hits);
             for index in first..end {
                 if found.lanes >> (index - first) & 1 == 0 {
                     self.shade_one(index);

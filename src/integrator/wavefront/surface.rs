@@ -2,9 +2,9 @@ use glam::Vec3;
 
 use crate::geometry::{Hit, is_clear_of_edges, triangle_departure};
 use crate::math::{DoubleLanes, LANES, Lanes, Ray, Vec3Array, Vec3Lanes, gamma};
-use crate::scene::{PreparedScene, SurfaceInteraction};
+use crate::scene::{PlainShape, PlainSurfaces, SurfaceInteraction};
 
-/// Up to eight plain surface points, each with the bits of [`PreparedScene::interaction`].
+/// Up to eight plain surface points, each with the bits of [`crate::scene::PreparedScene::interaction`].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SurfaceLanes<L> {
     pub(super) point: Vec3Lanes<L>,
@@ -47,48 +47,51 @@ pub(super) struct Found {
 }
 
 impl Found {
-    /// Looks up the surfaces of up to eight `hits` by `rays`.
+    /// Nothing.
+    pub(super) const NONE: Self = Self {
+        lanes: 0,
+        spheres: 0,
+        smooth: 0,
+        vertices: [Vec3Array::ZERO; 3],
+        normals: [Vec3Array::ZERO; 3],
+        reflectance: Vec3Array::ZERO,
+        weights: [[0.0; LANES]; 2],
+        met: Vec3Array::ZERO,
+    };
+
+    /// Looks up the surfaces of up to eight `hits` by `rays`. In other lanes stays what was there.
     #[inline(always)]
-    pub(super) fn new(scene: &PreparedScene, rays: &[Ray], hits: &[Hit]) -> Self {
-        let shapes = scene.aggregate().shapes();
-        let mut found = Self {
-            lanes: 0,
-            spheres: 0,
-            smooth: 0,
-            vertices: [Vec3Array::ZERO; 3],
-            normals: [Vec3Array::ZERO; 3],
-            reflectance: Vec3Array::ZERO,
-            weights: [[0.0; LANES]; 2],
-            met: Vec3Array::ZERO,
-        };
+    pub(super) fn look_up(&mut self, scene: &PlainSurfaces<'_>, rays: &[Ray], hits: &[Hit]) {
+        (self.lanes, self.spheres, self.smooth) = (0, 0, 0);
         for (lane, (ray, hit)) in rays.iter().zip(hits).enumerate().take(LANES) {
-            let Some(reflectance) = scene.plain_reflectance(hit.primitive) else {
+            let Some((reflectance, shape)) = scene.get(hit.primitive) else {
                 continue;
             };
             let bit = 1 << lane;
-            found.lanes |= bit;
-            found.reflectance.set(lane, reflectance);
-            if let Some(sphere) = shapes.sphere(hit.primitive) {
-                found.spheres |= bit;
-                found.vertices[0].set(lane, sphere.center);
-                found.vertices[1].set(lane, Vec3::splat(sphere.radius));
-                found.met.set(lane, ray.at(hit.t));
-                continue;
-            }
-            let vertices = shapes.vertices(hit.primitive as usize);
-            for (to, vertex) in found.vertices.iter_mut().zip(vertices) {
-                to.set(lane, vertex);
-            }
-            found.weights[0][lane] = hit.b1;
-            found.weights[1][lane] = hit.b2;
-            if let Some(normals) = scene.corner_normals(hit.primitive) {
-                found.smooth |= bit;
-                for (to, normal) in found.normals.iter_mut().zip(normals) {
-                    to.set(lane, normal);
+            self.lanes |= bit;
+            self.reflectance.set(lane, reflectance);
+            match shape {
+                PlainShape::Triangle([a, b, c], normals) => {
+                    self.vertices[0].set(lane, a);
+                    self.vertices[1].set(lane, b);
+                    self.vertices[2].set(lane, c);
+                    self.weights[0][lane] = hit.b1;
+                    self.weights[1][lane] = hit.b2;
+                    if let Some([a, b, c]) = normals {
+                        self.smooth |= bit;
+                        self.normals[0].set(lane, *a);
+                        self.normals[1].set(lane, *b);
+                        self.normals[2].set(lane, *c);
+                    }
+                }
+                PlainShape::Sphere(sphere) => {
+                    self.spheres |= bit;
+                    self.vertices[0].set(lane, sphere.center);
+                    self.vertices[1].set(lane, Vec3::splat(sphere.radius));
+                    self.met.set(lane, ray.at(hit.t));
                 }
             }
         }
-        found
     }
 
     /// The surfaces.

@@ -3,6 +3,7 @@
     reason = "intrinsics; the portable form is the same to the bit and about half as fast"
 )]
 
+use glam::Vec3;
 use std::arch::x86_64::{
     __m256, _CMP_EQ_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _mm256_add_ps, _mm256_and_ps, _mm256_andnot_ps,
     _mm256_blendv_ps, _mm256_broadcast_ss, _mm256_castps_si256, _mm256_castsi256_ps, _mm256_cmp_ps,
@@ -16,7 +17,7 @@ use std::ops::{Add, BitAnd, BitOr, Div, Mul, Sub};
 use super::avx2_doubles::Avx2Doubles;
 use super::avx2_ints::Avx2Ints;
 use super::{LANES, LaneKernel, Lanes};
-use crate::math::Isa;
+use crate::math::{Isa, Ray};
 
 /// Eight lanes in one register. Used only by kernels that [`run`] or the
 /// traversal's own dispatch has started, which check that AVX2 is there.
@@ -168,6 +169,20 @@ impl Lanes for Avx2Lanes {
     #[inline(always)]
     fn select_ints(mask: Avx2Mask, yes: Avx2Ints, no: Avx2Ints) -> Avx2Ints {
         Self::select(mask, Self::from_ints(yes), Self::from_ints(no)).to_ints()
+    }
+
+    #[inline(always)]
+    fn load_ray(ray: &Ray) -> Self {
+        // SAFETY: AVX2 is there (see `Avx2Lanes`); a ray is eight numbers in this order (`repr(C)`).
+        Self(unsafe { _mm256_loadu_ps(std::ptr::from_ref(ray).cast()) })
+    }
+
+    #[inline(always)]
+    fn to_ray(self) -> Ray {
+        let mut ray = Ray::new(Vec3::ZERO, Vec3::ZERO);
+        // SAFETY: AVX2 is there (see `Avx2Lanes`); a ray is eight numbers in this order (`repr(C)`).
+        unsafe { _mm256_storeu_ps(std::ptr::from_mut(&mut ray).cast(), self.0) };
+        ray
     }
 
     #[inline(always)]

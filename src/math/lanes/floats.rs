@@ -2,6 +2,7 @@ use std::fmt::Debug;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Sub};
 
 use super::{DoubleLanes, IntLanes};
+use crate::math::Ray;
 
 /// Numbers in one [`Lanes`].
 pub const LANES: usize = 8;
@@ -72,6 +73,12 @@ pub trait Lanes:
 
     /// `yes` where the mask is true, else `no`.
     fn select_ints(mask: Self::Mask, yes: Self::Ints, no: Self::Ints) -> Self::Ints;
+
+    /// Origin, direction, `t_min` and `t_max` of a ray.
+    fn load_ray(ray: &Ray) -> Self;
+
+    /// The ray with these numbers, see [`Self::load_ray`].
+    fn to_ray(self) -> Ray;
 
     /// Rows and columns exchanged.
     fn transpose(rows: [Self; LANES]) -> [Self; LANES];

@@ -1,10 +1,11 @@
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Sub};
 
-use glam::{BVec4A, Vec4};
+use glam::{BVec4A, Vec3, Vec4};
 
 use super::portable_doubles::PortableDoubles;
 use super::portable_ints::PortableInts;
 use super::{LANES, Lanes};
+use crate::math::Ray;
 
 /// Eight lanes as two vectors of four.
 #[derive(Clone, Copy, Debug)]
@@ -126,6 +127,23 @@ impl Lanes for PortableLanes {
     #[inline(always)]
     fn select_ints(mask: PortableMask, yes: PortableInts, no: PortableInts) -> PortableInts {
         Self::select(mask, Self::from_ints(yes), Self::from_ints(no)).to_ints()
+    }
+
+    #[inline(always)]
+    fn load_ray(ray: &Ray) -> Self {
+        let (o, d) = (&ray.origin, &ray.direction);
+        Self::load(&[o.x, o.y, o.z, d.x, d.y, d.z, ray.t_min, ray.t_max])
+    }
+
+    #[inline(always)]
+    fn to_ray(self) -> Ray {
+        let [ox, oy, oz, dx, dy, dz, t_min, t_max] = self.to_array();
+        Ray {
+            origin: Vec3::new(ox, oy, oz),
+            direction: Vec3::new(dx, dy, dz),
+            t_min,
+            t_max,
+        }
     }
 
     #[inline(always)]
