@@ -32,16 +32,18 @@ mod tests {
     use glam::{DVec3, Vec2};
 
     use crate::camera::{Camera, RayCamera};
-    use crate::math::{Isa, LANES, LaneKernel, Lanes, Normalization, Vec3Array, run_lanes};
+    use crate::math::{Isa, LaneKernel, Lanes, Normalization, ROW, Vec3Array, run_lanes};
 
-    struct Directions<'a>(&'a RayCamera, [[f32; LANES]; 2]);
+    struct Directions<'a>(&'a RayCamera, [[f32; ROW]; 2]);
 
     impl LaneKernel for Directions<'_> {
         type Answer = Vec3Array;
 
         fn run<L: Lanes>(self) -> Vec3Array {
             let [x, y] = self.1;
-            self.0.directions_lanes([L::load(&x), L::load(&y)]).store()
+            self.0
+                .directions_lanes([L::load_row(&x), L::load_row(&y)])
+                .store()
         }
     }
 
@@ -53,11 +55,11 @@ mod tests {
         };
         let camera = RayCamera::new(&camera, 201, 97, &Normalization::IDENTITY);
         for i in 0..500 {
-            let x: [f32; LANES] = std::array::from_fn(|lane| i as f32 * 0.37 + lane as f32);
+            let x: [f32; ROW] = std::array::from_fn(|lane| i as f32 * 0.37 + lane as f32);
             let y = x.map(|x| 97.0 - 0.49 * x);
             for isa in Isa::available() {
                 let lanes = run_lanes(isa, Directions(&camera, [x, y]));
-                for lane in 0..LANES {
+                for lane in 0..8 {
                     let ray = camera.generate_ray(Vec2::new(x[lane], y[lane]), || Vec2::ZERO);
                     assert_eq!(lanes.get(lane), ray.direction);
                 }

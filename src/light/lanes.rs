@@ -3,7 +3,7 @@ use glam::Vec3;
 use super::near_lanes::NearParallelogram;
 use super::parallelogram::Parallelogram;
 use super::{AreaLight, Light};
-use crate::math::{LANES, Lanes, Vec3Lanes};
+use crate::math::{Lanes, Vec3Lanes};
 use crate::sampling::BilinearLanes;
 
 /// What [`super::LightSampleContext`] is for one surface point.
@@ -28,7 +28,7 @@ pub struct LightSampleLanes<L: Lanes> {
     pub pdf: L,
 }
 
-/// A light of one parallelogram, whose samples are taken eight at a time.
+/// A light of one parallelogram, whose samples are taken as many at a time as there are lanes.
 #[derive(Clone, Copy, Debug)]
 pub struct ParallelogramLight<'a> {
     light: &'a AreaLight,
@@ -70,7 +70,7 @@ impl ParallelogramLight<'_> {
         let shape = self.shape;
         let is_near = self.is_near(from.point);
         let near = L::bits(is_near);
-        let all_near = near == (1 << LANES) - 1;
+        let all_near = near == L::ALL;
         let (mut point, mut pdf, mut is_there) = if all_near {
             self.near.sample(shape, from, u)
         } else {

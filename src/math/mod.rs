@@ -16,7 +16,7 @@ pub use isa::{Isa, IsaError};
 pub(crate) use lanes::Avx2Lanes;
 pub(crate) use lanes::PortableLanes;
 pub use lanes::{
-    DoubleLanes, FrameLanes, IntLanes, LANES, LaneKernel, Lanes, Vec3Array, Vec3Lanes,
+    DoubleLanes, FrameLanes, IntLanes, LANES, LaneKernel, Lanes, ROW, Vec3Array, Vec3Lanes,
     offset_origin_lanes, run_lanes,
 };
 pub use normalization::Normalization;

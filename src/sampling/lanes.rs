@@ -79,17 +79,17 @@ fn sin_cos_eighth<L: Lanes>(x: L) -> (L, L) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::{Isa, LANES, LaneKernel, Vec3Array, run_lanes};
+    use crate::math::{Isa, LaneKernel, ROW, Vec3Array, run_lanes};
     use crate::sampling::{PathSampler, Slot, cosine_hemisphere};
     use glam::Vec2;
 
-    struct Warp([[f32; LANES]; 2]);
+    struct Warp([[f32; ROW]; 2]);
 
     impl LaneKernel for Warp {
         type Answer = Vec3Array;
 
         fn run<L: Lanes>(self) -> Self::Answer {
-            cosine_hemisphere_lanes(self.0.map(|u| L::load(&u))).store()
+            cosine_hemisphere_lanes(self.0.map(|u| L::load_row(&u))).store()
         }
     }
 
@@ -99,8 +99,8 @@ mod tests {
         let grid = ends.into_iter().flat_map(|x| ends.map(|y| Vec2::new(x, y)));
         let spread = (0..4000).map(|i| PathSampler::new(3, [i, 0], 0).get_2d(0, Slot::Scatter));
         let points: Vec<Vec2> = grid.chain(spread).collect();
-        for eight in points.chunks_exact(LANES) {
-            let u = [0, 1].map(|axis| std::array::from_fn(|lane| eight[lane][axis]));
+        for eight in points.chunks_exact(8) {
+            let u = [0, 1].map(|axis| std::array::from_fn(|lane| eight[lane % 8][axis]));
             for isa in Isa::available() {
                 let warped = run_lanes(isa, Warp(u));
                 for (lane, &u) in eight.iter().enumerate() {

@@ -48,7 +48,7 @@ pub(super) trait Kernel {
 pub(super) fn dispatch<K: Kernel>(isa: Isa, kernel: K) -> K::Answer {
     match isa {
         #[cfg(target_arch = "x86_64")]
-        Isa::Avx2 => avx2::with_avx2(kernel),
+        Isa::Avx2 | Isa::Avx512 => avx2::with_avx2(kernel),
         _ => {
             assert!(isa.is_available(), "this processor has no {isa}");
             kernel.run::<portable::Portable>()

@@ -1,6 +1,5 @@
 use super::REACH;
-use super::packet::of_rays;
-use crate::math::{IntLanes, LANES, Lanes, Ray};
+use crate::math::{IntLanes, Lanes, ROW, Ray};
 
 /// Rays that are sorted at once; their numbers are 16 bits.
 pub(super) const CHUNK: usize = 2048;
@@ -49,7 +48,7 @@ impl<V: Lanes> Ends<V> {
     fn fold(self) -> [f32; 2] {
         let (least, largest) = (self.0.to_array(), self.1.to_array());
         let mut ends = [least[0], largest[0]];
-        for i in 1..LANES {
+        for i in 1..V::N {
             ends = [ends[0].min(least[i]), ends[1].max(largest[i])];
         }
         ends
@@ -68,18 +67,18 @@ impl Bins {
     /// Sorts `rays`, at least one and at most [`CHUNK`].
     #[inline(always)]
     pub(super) fn sort<V: Lanes, const ANY: bool>(&mut self, rays: &[Ray]) {
-        let mut keys = [[INVALID; LANES]; CHUNK / LANES];
+        let mut keys = [INVALID; CHUNK + ROW];
         let mut origins = [Ends::<V>::none(); 3];
         let mut reaches = [Ends::<V>::none(); 3];
-        for (first, keys) in (0..rays.len()).step_by(LANES).zip(&mut keys) {
+        for first in (0..rays.len()).step_by(V::N) {
             let last = rays.len() - 1;
-            let mut eight = [&rays[first]; LANES];
-            for (i, ray) in eight.iter_mut().enumerate().skip(1) {
+            let mut some = [&rays[first]; ROW];
+            for (i, ray) in some.iter_mut().enumerate().take(V::N).skip(1) {
                 *ray = &rays[(first + i).min(last)];
             }
-            let [ox, oy, oz, dx, dy, dz, t_min, t_max] = of_rays::<V>(eight);
+            let [ox, oy, oz, dx, dy, dz, t_min, t_max] = V::of_rays(&some);
             let (key, plain) = keys_of([ox, oy, oz], [dx, dy, dz], [t_min, t_max]);
-            key.store(keys);
+            keys[first..first + V::N].copy_from_slice(&key.to_array()[..V::N]);
             let (origin, direction) = ([ox, oy, oz], [dx, dy, dz]);
             for axis in 0..3 {
                 let (o, d) = (origin[axis], direction[axis]);
@@ -102,7 +101,7 @@ impl Bins {
             self.origins[axis] = origins[axis].fold();
             self.reaches[axis] = reaches[axis].fold();
         }
-        self.arrange(&keys.as_flattened()[..rays.len()]);
+        self.arrange(&keys[..rays.len()]);
     }
 
     /// Counting sort.

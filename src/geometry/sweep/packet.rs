@@ -2,12 +2,12 @@ use super::super::Hit;
 use super::patch::Patch;
 use super::{Bounds, VERTICES, Vertices};
 use crate::bvh::{FAR_MARGIN, T_FAR};
-use crate::math::{IntLanes, LANES, Lanes, Ray};
+use crate::math::{IntLanes, Lanes, ROW, Ray};
 
-/// Every vertex of the scene as eight rays see it: sheared to where they run along the last axis.
-pub(super) type Sheared = [[[f32; LANES]; 2]; VERTICES];
+/// Every vertex of the scene as some rays see it: sheared to where they run along the last axis.
+pub(super) type Sheared = [[[f32; ROW]; 2]; VERTICES];
 
-/// Eight rays of one octant, longest along one axis, and the best hits so far.
+/// Rays of one octant, one a lane, longest along one axis, and the best hits so far.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Packet<V: Lanes> {
     pub(super) origin: [V; 3],
@@ -36,8 +36,8 @@ pub(super) struct Packet<V: Lanes> {
 impl<V: Lanes> Packet<V> {
     /// Prepares rays that go one `way`: the longest axis times 8, plus the octant.
     #[inline(always)]
-    pub(super) fn new(rays: [&Ray; LANES], way: usize) -> Self {
-        let [ox, oy, oz, dx, dy, dz, t_min, t_max] = of_rays::<V>(rays);
+    pub(super) fn new(rays: &[&Ray; ROW], way: usize) -> Self {
+        let [ox, oy, oz, dx, dy, dz, t_min, t_max] = V::of_rays(rays);
         Self::of_lanes([ox, oy, oz], [dx, dy, dz], [t_min, t_max], way)
     }
 
@@ -101,8 +101,8 @@ impl<V: Lanes> Packet<V> {
             let vertex = &vertices[usize::from(number)];
             let to = &mut sheared[usize::from(number)];
             let depth = V::splat(vertex[Z]) - oz;
-            (V::splat(vertex[X]) - ox - shear_x * depth).store(&mut to[0]);
-            (V::splat(vertex[Y]) - oy - shear_y * depth).store(&mut to[1]);
+            (V::splat(vertex[X]) - ox - shear_x * depth).store_row(&mut to[0]);
+            (V::splat(vertex[Y]) - oy - shear_y * depth).store_row(&mut to[1]);
         }
     }
 
@@ -221,7 +221,7 @@ impl<V: Lanes> Packet<V> {
 #[inline(always)]
 fn corner<V: Lanes>(sheared: &Sheared, number: u8) -> [V; 2] {
     let [x, y] = &sheared[usize::from(number)];
-    [V::load(x), V::load(y)]
+    [V::load_row(x), V::load_row(y)]
 }
 
 /// The edge functions of a triangle in its own order, from those in the order of a patch.
@@ -246,20 +246,4 @@ fn same_sign<V: Lanes>(u: V, v: V, w: V) -> V::Mask {
     let (u, v, w) = (u.to_ints(), v.to_ints(), w.to_ints());
     let differs = ((u ^ v) | (u ^ w)).shr::<31>();
     V::ints_eq(differs, V::Ints::splat(0))
-}
-
-/// The components of eight rays: origins, directions, `t_min`, `t_max`.
-#[inline(always)]
-pub(super) fn of_rays<V: Lanes>(rays: [&Ray; LANES]) -> [V; 8] {
-    let [a, b, c, d, e, f, g, h] = rays;
-    V::transpose([
-        V::load_ray(a),
-        V::load_ray(b),
-        V::load_ray(c),
-        V::load_ray(d),
-        V::load_ray(e),
-        V::load_ray(f),
-        V::load_ray(g),
-        V::load_ray(h),
-    ])
 }

@@ -3,7 +3,7 @@ use super::bins::{Bins, CHUNK, WAYS};
 use super::packet::{Packet, Sheared};
 use super::patch::Patch;
 use super::{Sweep, VERTICES};
-use crate::math::{LANES, LaneKernel, Lanes, Ray};
+use crate::math::{LaneKernel, Lanes, ROW, Ray};
 
 /// Traces rays through a small scene. `ANY`: until the first hit.
 #[derive(Debug)]
@@ -34,7 +34,7 @@ impl<F: FnMut(usize, Hit), const ANY: bool> LaneKernel for Trace<'_, F, ANY> {
     fn run<V: Lanes>(mut self) {
         let mut room = Room {
             bins: Bins::EMPTY,
-            sheared: [[[0.0; LANES]; 2]; VERTICES],
+            sheared: [[[0.0; ROW]; 2]; VERTICES],
             candidates: Vec::with_capacity(self.sweep.patches.len()),
             vertices: Vec::with_capacity(VERTICES),
         };
@@ -101,19 +101,19 @@ impl<F: FnMut(usize, Hit), const ANY: bool> Trace<'_, F, ANY> {
             vertices,
         } = room;
         let members = bins.way(way);
-        for eight in members.chunks(LANES) {
-            let last = eight.len() - 1;
-            let mut chosen = [&rays[usize::from(eight[0])]; LANES];
-            for (i, ray) in chosen.iter_mut().enumerate().skip(1) {
-                *ray = &rays[usize::from(eight[i.min(last)])];
+        for some in members.chunks(V::N) {
+            let last = some.len() - 1;
+            let mut chosen = [&rays[usize::from(some[0])]; ROW];
+            for (i, ray) in chosen.iter_mut().enumerate().take(V::N).skip(1) {
+                *ray = &rays[usize::from(some[i.min(last)])];
             }
-            let mut packet = Packet::<V>::new(chosen, way);
+            let mut packet = Packet::<V>::new(&chosen, way);
             self.sweep_packet(&mut packet, (sheared, candidates, vertices));
             let odd = V::bits(packet.odd);
             let (t, primitive) = (packet.t.to_array(), packet.primitive.to_array());
             let [b1, b2] = packet.weights();
             let (b1, b2) = (b1.to_array(), b2.to_array());
-            for (lane, &i) in eight.iter().enumerate() {
+            for (lane, &i) in some.iter().enumerate() {
                 let number = first + usize::from(i);
                 let hit = Hit {
                     t: t[lane],
@@ -140,7 +140,7 @@ impl<F: FnMut(usize, Hit), const ANY: bool> Trace<'_, F, ANY> {
         packet.shear(&self.sweep.vertices, vertices, sheared);
         for &patch in candidates {
             packet.meet::<ANY>(&self.sweep.patches[patch as usize], sheared);
-            if ANY && V::bits(packet.has_hit()) == 0xff {
+            if ANY && V::bits(packet.has_hit()) == V::ALL {
                 return;
             }
         }

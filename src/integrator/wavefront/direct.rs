@@ -5,7 +5,7 @@ use super::shade::{Group, Shade};
 use crate::light::{
     ContextLanes, LightSample, LightSampleContext, LightSampleLanes, ParallelogramLight,
 };
-use crate::math::{LANES, Lanes, SHADOW_T_MAX, Vec3Array, Vec3Lanes, gamma, offset_origin_lanes};
+use crate::math::{Lanes, ROW, SHADOW_T_MAX, Vec3Array, Vec3Lanes, gamma, offset_origin_lanes};
 use crate::sampling::Slot;
 
 /// A light sample for each of eight vertices.
@@ -21,9 +21,9 @@ pub(super) struct LightSamples {
     radiance: Vec3Array,
     point: Vec3Array,
     normal: Vec3Array,
-    pdf: [f32; LANES],
+    pdf: [f32; ROW],
     /// Weight over density.
-    factor: [f32; LANES],
+    factor: [f32; ROW],
 }
 
 impl LightSamples {
@@ -35,8 +35,8 @@ impl LightSamples {
         radiance: Vec3Array::ZERO,
         point: Vec3Array::ZERO,
         normal: Vec3Array::ZERO,
-        pdf: [1.0; LANES],
-        factor: [0.0; LANES],
+        pdf: [1.0; ROW],
+        factor: [0.0; ROW],
     };
 
     /// The samples of one light that are there, of those `lanes`.
@@ -53,8 +53,8 @@ impl LightSamples {
         self.point = found.point.store();
         self.radiance = Vec3Lanes::<L>::splat(light.radiance()).store();
         self.normal = Vec3Lanes::<L>::splat(light.normal()).store();
-        found.pdf.store(&mut self.pdf);
-        (L::splat(weight) / found.pdf).store(&mut self.factor);
+        found.pdf.store_row(&mut self.pdf);
+        (L::splat(weight) / found.pdf).store_row(&mut self.factor);
     }
 
     #[inline(always)]
@@ -117,7 +117,7 @@ impl Shade<'_, '_> {
         (points, normals): (&Vec3Array, &Vec3Array),
         number: u32,
     ) {
-        for lane in (0..LANES).filter(|lane| lanes >> lane & 1 == 1) {
+        for lane in (0..ROW).filter(|lane| lanes >> lane & 1 == 1) {
             let id = self.paths.states[first + lane].id as usize;
             let from = LightSampleContext {
                 point: points.get(lane),
@@ -145,12 +145,13 @@ impl Shade<'_, '_> {
         }
         let scattered = (surface.reflectance.scale(L::splat(FRAC_1_PI))).scale(z.abs());
         let mut contribution = (group.throughput * scattered * Vec3Lanes::load(&samples.radiance))
-            .scale(L::load(&samples.factor));
+            .scale(L::load_row(&samples.factor));
         let black = contribution.x.eq(zero) & contribution.y.eq(zero) & contribution.z.eq(zero);
         let bits = bits & !L::bits(black);
         if self.tracer.shares_diffuse_emission() {
             let n = L::splat(self.tracer.settings.light_samples as f32);
-            let share = power_heuristic(n * L::load(&samples.pdf), z.abs() * L::splat(FRAC_1_PI));
+            let share =
+                power_heuristic(n * L::load_row(&samples.pdf), z.abs() * L::splat(FRAC_1_PI));
             let shared = contribution.scale(share);
             let is_delta = L::mask_of_bits(samples.delta);
             contribution = Vec3Lanes::select(is_delta, contribution, shared);
@@ -165,9 +166,9 @@ impl Shade<'_, '_> {
         let t_max = L::select(infinite, L::splat(f32::INFINITY), L::splat(SHADOW_T_MAX));
         let rays = rays(origin, direction, [zero, t_max]);
         let contribution = contribution.store();
-        for lane in (0..LANES).filter(|lane| bits >> lane & 1 == 1) {
+        for lane in (0..ROW).filter(|lane| bits >> lane & 1 == 1) {
             let owner = self.paths.states[group.first + lane].id;
-            (self.direct).push_shadow(owner, rays[lane].to_ray(), contribution.get(lane));
+            (self.direct).push_shadow(owner, rays[lane], contribution.get(lane));
         }
         bits.count_ones()
     }

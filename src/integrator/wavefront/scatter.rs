@@ -5,7 +5,7 @@ use glam::Vec3;
 use super::super::path::{MIN_SURVIVAL, SURVIVAL_OF_THROUGHPUT, TRAPPED_AFTER, TRAPPED_SURVIVAL};
 use super::paths::{NONE, PathState};
 use super::shade::{Group, Shade};
-use crate::math::{LANES, Lanes, Vec3Lanes, offset_origin_lanes};
+use crate::math::{Lanes, ROW, Ray, Vec3Lanes, offset_origin_lanes};
 use crate::sampling::{Slot, cosine_hemisphere_lanes};
 
 impl Shade<'_, '_> {
@@ -83,8 +83,8 @@ impl Shade<'_, '_> {
         let rays = rays(origin, direction, ends);
         let (throughput, pdf) = (throughput.store(), pdf.to_array());
         let (from, side) = (from.store(), side.store());
-        for lane in (0..LANES).filter(|lane| lanes >> lane & 1 == 1) {
-            self.next.rays.push(rays[lane].to_ray());
+        for lane in (0..L::N).filter(|lane| lanes >> lane & 1 == 1) {
+            self.next.rays.push(rays[lane]);
             self.next.states.push(PathState {
                 throughput: throughput.get(lane),
                 id: self.paths.states[group.first + lane].id,
@@ -96,13 +96,15 @@ impl Shade<'_, '_> {
     }
 }
 
-/// Eight rays, one in each row, as [`Lanes::to_ray`] takes them.
+/// Rays of all lanes.
 #[inline(always)]
 pub(super) fn rays<L: Lanes>(
     origin: Vec3Lanes<L>,
     direction: Vec3Lanes<L>,
     [t_min, t_max]: [L; 2],
-) -> [L; LANES] {
+) -> [Ray; ROW] {
     let (o, d) = (origin, direction);
-    L::transpose([o.x, o.y, o.z, d.x, d.y, d.z, t_min, t_max])
+    let mut rays = [Ray::new(Vec3::ZERO, Vec3::ZERO); ROW];
+    L::to_rays([o.x, o.y, o.z, d.x, d.y, d.z, t_min, t_max], &mut rays);
+    rays
 }

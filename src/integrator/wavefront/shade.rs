@@ -6,7 +6,7 @@ use super::surface::{Found, SurfaceArrays, SurfaceLanes};
 use super::{Path, PathCounts, PathTracer, Vertex};
 use crate::color::Rgb;
 use crate::geometry::Hit;
-use crate::math::{Frame, FrameLanes, LANES, LaneKernel, Lanes, Vec3Array, Vec3Lanes};
+use crate::math::{Frame, FrameLanes, LaneKernel, Lanes, ROW, Vec3Array, Vec3Lanes};
 use crate::sampling::{PathSampler, PathSamplerLanes};
 
 /// One bounce of a range of paths: emission is added to their radiance, rays of direct light to the
@@ -55,8 +55,8 @@ impl LaneKernel for Shade<'_, '_> {
         let bounces_on = self.bounce < self.tracer.settings.max_depth.0;
         let plain = self.tracer.scene.plain_surfaces();
         let mut found = Found::NONE;
-        for first in self.range.clone().step_by(LANES) {
-            let end = (first + LANES).min(self.range.end);
+        for first in self.range.clone().step_by(L::N) {
+            let end = (first + L::N).min(self.range.end);
             let (rays, hits) = (&self.paths.rays[first..end], &self.hits[first..end]);
             found.look_up(&plain, rays, hits);
             for index in first..end {
@@ -81,7 +81,7 @@ impl<'s> Shade<'_, 's> {
         let rest = self.paths.rays[first..]
             .iter()
             .zip(&self.paths.states[first..]);
-        for (lane, (ray, state)) in rest.enumerate().take(LANES) {
+        for (lane, (ray, state)) in rest.enumerate().take(L::N) {
             directions.set(lane, ray.direction);
             throughputs.set(lane, state.throughput);
         }
@@ -143,7 +143,7 @@ impl<'s> Shade<'_, 's> {
         lanes: u32,
         surfaces: &SurfaceArrays,
     ) {
-        for lane in (0..LANES).filter(|lane| lanes >> lane & 1 == 1) {
+        for lane in (0..ROW).filter(|lane| lanes >> lane & 1 == 1) {
             let index = first + lane;
             let path = self.path(index);
             let primitive = self.hits[index].primitive;

@@ -1,7 +1,7 @@
 use glam::Vec3;
 
 use crate::geometry::{Hit, is_clear_of_edges, triangle_departure};
-use crate::math::{DoubleLanes, LANES, Lanes, Ray, Vec3Array, Vec3Lanes, gamma};
+use crate::math::{DoubleLanes, Lanes, ROW, Ray, Vec3Array, Vec3Lanes, gamma};
 use crate::scene::{PlainShape, PlainSurfaces, SurfaceInteraction};
 
 /// Up to eight plain surface points, each with the bits of [`crate::scene::PreparedScene::interaction`].
@@ -41,7 +41,7 @@ pub(super) struct Found {
     /// At the vertices of smooth triangles.
     normals: [Vec3Array; 3],
     reflectance: Vec3Array,
-    weights: [[f32; LANES]; 2],
+    weights: [[f32; ROW]; 2],
     /// Of rays that met spheres, where they did.
     met: Vec3Array,
 }
@@ -55,7 +55,7 @@ impl Found {
         vertices: [Vec3Array::ZERO; 3],
         normals: [Vec3Array::ZERO; 3],
         reflectance: Vec3Array::ZERO,
-        weights: [[0.0; LANES]; 2],
+        weights: [[0.0; ROW]; 2],
         met: Vec3Array::ZERO,
     };
 
@@ -63,7 +63,7 @@ impl Found {
     #[inline(always)]
     pub(super) fn look_up(&mut self, scene: &PlainSurfaces<'_>, rays: &[Ray], hits: &[Hit]) {
         (self.lanes, self.spheres, self.smooth) = (0, 0, 0);
-        for (lane, (ray, hit)) in rays.iter().zip(hits).enumerate().take(LANES) {
+        for (lane, (ray, hit)) in rays.iter().zip(hits).enumerate().take(ROW) {
             let Some((reflectance, shape)) = scene.get(hit.primitive) else {
                 continue;
             };
@@ -102,7 +102,7 @@ impl Found {
             self.add_spheres(&mut surface);
         }
         if self.smooth != 0 {
-            let (b1, b2) = (L::load(&self.weights[0]), L::load(&self.weights[1]));
+            let (b1, b2) = (L::load_row(&self.weights[0]), L::load_row(&self.weights[1]));
             let b0 = L::splat(1.0) - b1 - b2;
             let smooth = Vec3Lanes::load(&self.normals[0]).scale(b0)
                 + Vec3Lanes::load(&self.normals[1]).scale(b1)
@@ -121,7 +121,7 @@ impl Found {
         let a = Vec3Lanes::<L>::load(&self.vertices[0]);
         let b = Vec3Lanes::load(&self.vertices[1]);
         let c = Vec3Lanes::load(&self.vertices[2]);
-        let (b1, b2) = (L::load(&self.weights[0]), L::load(&self.weights[1]));
+        let (b1, b2) = (L::load_row(&self.weights[0]), L::load_row(&self.weights[1]));
         let b0 = L::splat(1.0) - b1 - b2;
         let (wa, wb, wc) = (a.scale(b0), b.scale(b1), c.scale(b2));
         let point = wa + wb + wc;
@@ -162,7 +162,7 @@ impl Found {
     #[inline(never)]
     fn depart(&self, lanes: u32, points: &Vec3Array, errors: &Vec3Array) -> (Vec3Array, Vec3Array) {
         let (mut departures, mut bounds) = (*points, *errors);
-        for lane in (0..LANES).filter(|lane| lanes >> lane & 1 == 1) {
+        for lane in (0..ROW).filter(|lane| lanes >> lane & 1 == 1) {
             let vertices = self.vertices.map(|vertex| vertex.get(lane));
             let [b1, b2] = self.weights.map(|weights| weights[lane]);
             let at = (points.get(lane), errors.get(lane));

@@ -3,7 +3,6 @@
     reason = "intrinsics; the portable form is the same to the bit and about half as fast"
 )]
 
-use glam::Vec3;
 use std::arch::x86_64::{
     __m256, _CMP_EQ_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _mm256_add_ps, _mm256_and_ps, _mm256_andnot_ps,
     _mm256_blendv_ps, _mm256_broadcast_ss, _mm256_castps_si256, _mm256_castsi256_ps, _mm256_cmp_ps,
@@ -16,7 +15,7 @@ use std::ops::{Add, BitAnd, BitOr, Div, Mul, Sub};
 
 use super::avx2_doubles::Avx2Doubles;
 use super::avx2_ints::Avx2Ints;
-use super::{LANES, LaneKernel, Lanes};
+use super::{IntLanes, LANES, LaneKernel, Lanes, ROW};
 use crate::math::{Isa, Ray};
 
 /// Eight lanes in one register. Used only by kernels that [`run`] or the
@@ -69,6 +68,20 @@ impl Lanes for Avx2Lanes {
     type Mask = Avx2Mask;
     type Ints = Avx2Ints;
     type Doubles = Avx2Doubles;
+
+    const N: usize = LANES;
+
+    #[inline(always)]
+    fn load_row(from: &[f32; ROW]) -> Self {
+        // SAFETY: AVX2 is there (see `Avx2Lanes`); a row has at least eight numbers.
+        Self(unsafe { _mm256_loadu_ps(from.as_ptr()) })
+    }
+
+    #[inline(always)]
+    fn store_row(self, to: &mut [f32; ROW]) {
+        // SAFETY: AVX2 is there (see `Avx2Lanes`); a row has room for eight numbers.
+        unsafe { _mm256_storeu_ps(to.as_mut_ptr(), self.0) }
+    }
 
     #[inline(always)]
     fn splat(value: f32) -> Self {
@@ -172,53 +185,88 @@ impl Lanes for Avx2Lanes {
     }
 
     #[inline(always)]
-    fn load_ray(ray: &Ray) -> Self {
-        // SAFETY: AVX2 is there (see `Avx2Lanes`); a ray is eight numbers in this order (`repr(C)`).
-        Self(unsafe { _mm256_loadu_ps(std::ptr::from_ref(ray).cast()) })
+    fn mask_of_bits(bits: u32) -> Avx2Mask {
+        let lane = Avx2Ints::load(&[1, 2, 4, 8, 16, 32, 64, 128, 0, 0, 0, 0, 0, 0, 0, 0]);
+        Self::ints_eq(lane & Avx2Ints::splat(bits), lane)
     }
 
     #[inline(always)]
-    fn to_ray(self) -> Ray {
-        let mut ray = Ray::new(Vec3::ZERO, Vec3::ZERO);
-        // SAFETY: AVX2 is there (see `Avx2Lanes`); a ray is eight numbers in this order (`repr(C)`).
-        unsafe { _mm256_storeu_ps(std::ptr::from_mut(&mut ray).cast(), self.0) };
-        ray
+    fn of_rays(rays: &[&Ray; ROW]) -> [Self; 8] {
+        let [a, b, c, d, e, f, g, h, ..] = *rays;
+        transpose([
+            load_ray(a),
+            load_ray(b),
+            load_ray(c),
+            load_ray(d),
+            load_ray(e),
+            load_ray(f),
+            load_ray(g),
+            load_ray(h),
+        ])
     }
 
     #[inline(always)]
-    fn transpose(rows: [Self; LANES]) -> [Self; LANES] {
-        // SAFETY: AVX2 is there (see `Avx2Lanes`).
-        unsafe {
-            // Pairs of rows, then fours, then halves.
-            macro_rules! four {
-                ($a:literal, $b:literal) => {{
-                    let (top, bottom) = (
-                        _mm256_unpacklo_ps(rows[$a].0, rows[$a + 1].0),
-                        _mm256_unpackhi_ps(rows[$a].0, rows[$a + 1].0),
-                    );
-                    let (next, last) = (
-                        _mm256_unpacklo_ps(rows[$b].0, rows[$b + 1].0),
-                        _mm256_unpackhi_ps(rows[$b].0, rows[$b + 1].0),
-                    );
-                    [
-                        _mm256_shuffle_ps::<0b01_00_01_00>(top, next),
-                        _mm256_shuffle_ps::<0b11_10_11_10>(top, next),
-                        _mm256_shuffle_ps::<0b01_00_01_00>(bottom, last),
-                        _mm256_shuffle_ps::<0b11_10_11_10>(bottom, last),
-                    ]
-                }};
-            }
-            let (upper, lower) = (four!(0, 2), four!(4, 6));
-            [
-                Self(_mm256_permute2f128_ps::<0x20>(upper[0], lower[0])),
-                Self(_mm256_permute2f128_ps::<0x20>(upper[1], lower[1])),
-                Self(_mm256_permute2f128_ps::<0x20>(upper[2], lower[2])),
-                Self(_mm256_permute2f128_ps::<0x20>(upper[3], lower[3])),
-                Self(_mm256_permute2f128_ps::<0x31>(upper[0], lower[0])),
-                Self(_mm256_permute2f128_ps::<0x31>(upper[1], lower[1])),
-                Self(_mm256_permute2f128_ps::<0x31>(upper[2], lower[2])),
-                Self(_mm256_permute2f128_ps::<0x31>(upper[3], lower[3])),
-            ]
+    fn to_rays(numbers: [Self; 8], rays: &mut [Ray; ROW]) {
+        let [a, b, c, d, e, f, g, h] = transpose(numbers);
+        store_ray(a, &mut rays[0]);
+        store_ray(b, &mut rays[1]);
+        store_ray(c, &mut rays[2]);
+        store_ray(d, &mut rays[3]);
+        store_ray(e, &mut rays[4]);
+        store_ray(f, &mut rays[5]);
+        store_ray(g, &mut rays[6]);
+        store_ray(h, &mut rays[7]);
+    }
+}
+
+/// The numbers of a ray.
+#[inline(always)]
+pub(super) fn load_ray(ray: &Ray) -> Avx2Lanes {
+    // SAFETY: AVX2 is there (see `Avx2Lanes`); a ray is eight numbers in this order (`repr(C)`).
+    Avx2Lanes(unsafe { _mm256_loadu_ps(std::ptr::from_ref(ray).cast()) })
+}
+
+/// The ray with these numbers.
+#[inline(always)]
+pub(super) fn store_ray(numbers: Avx2Lanes, ray: &mut Ray) {
+    // SAFETY: AVX2 is there (see `Avx2Lanes`); a ray is eight numbers in this order (`repr(C)`).
+    unsafe { _mm256_storeu_ps(std::ptr::from_mut(ray).cast(), numbers.0) }
+}
+
+/// Rows and columns exchanged.
+#[inline(always)]
+pub(super) fn transpose(rows: [Avx2Lanes; 8]) -> [Avx2Lanes; 8] {
+    // SAFETY: AVX2 is there (see `Avx2Lanes`).
+    unsafe {
+        // Pairs of rows, then fours, then halves.
+        macro_rules! four {
+            ($a:literal, $b:literal) => {{
+                let (top, bottom) = (
+                    _mm256_unpacklo_ps(rows[$a].0, rows[$a + 1].0),
+                    _mm256_unpackhi_ps(rows[$a].0, rows[$a + 1].0),
+                );
+                let (next, last) = (
+                    _mm256_unpacklo_ps(rows[$b].0, rows[$b + 1].0),
+                    _mm256_unpackhi_ps(rows[$b].0, rows[$b + 1].0),
+                );
+                [
+                    _mm256_shuffle_ps::<0b01_00_01_00>(top, next),
+                    _mm256_shuffle_ps::<0b11_10_11_10>(top, next),
+                    _mm256_shuffle_ps::<0b01_00_01_00>(bottom, last),
+                    _mm256_shuffle_ps::<0b11_10_11_10>(bottom, last),
+                ]
+            }};
         }
+        let (upper, lower) = (four!(0, 2), four!(4, 6));
+        [
+            Avx2Lanes(_mm256_permute2f128_ps::<0x20>(upper[0], lower[0])),
+            Avx2Lanes(_mm256_permute2f128_ps::<0x20>(upper[1], lower[1])),
+            Avx2Lanes(_mm256_permute2f128_ps::<0x20>(upper[2], lower[2])),
+            Avx2Lanes(_mm256_permute2f128_ps::<0x20>(upper[3], lower[3])),
+            Avx2Lanes(_mm256_permute2f128_ps::<0x31>(upper[0], lower[0])),
+            Avx2Lanes(_mm256_permute2f128_ps::<0x31>(upper[1], lower[1])),
+            Avx2Lanes(_mm256_permute2f128_ps::<0x31>(upper[2], lower[2])),
+            Avx2Lanes(_mm256_permute2f128_ps::<0x31>(upper[3], lower[3])),
+        ]
     }
 }

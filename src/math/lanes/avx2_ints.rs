@@ -8,7 +8,7 @@ use std::arch::x86_64::{
 };
 use std::ops::{Add, BitAnd, BitOr, BitXor, Mul};
 
-use super::{IntLanes, LANES};
+use super::{IntLanes, ROW};
 
 /// Eight integers in one register. Used only by kernels that [`super::avx2::run`] has started.
 #[derive(Clone, Copy, Debug)]
@@ -44,14 +44,14 @@ impl IntLanes for Avx2Ints {
     }
 
     #[inline(always)]
-    fn load(from: &[u32; LANES]) -> Self {
-        // SAFETY: AVX2 is there (see `Avx2Ints`); the array has eight numbers.
+    fn load(from: &[u32; ROW]) -> Self {
+        // SAFETY: AVX2 is there (see `Avx2Ints`); a row has at least eight numbers.
         Self(unsafe { _mm256_loadu_si256(from.as_ptr().cast()) })
     }
 
     #[inline(always)]
-    fn store(self, to: &mut [u32; LANES]) {
-        // SAFETY: AVX2 is there (see `Avx2Ints`); there is room for eight numbers.
+    fn store(self, to: &mut [u32; ROW]) {
+        // SAFETY: AVX2 is there (see `Avx2Ints`); a row has room for eight numbers.
         unsafe { _mm256_storeu_si256(to.as_mut_ptr().cast(), self.0) }
     }
 

@@ -1,7 +1,7 @@
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Sub};
 
-/// Eight numbers of double precision side by side, for the steps that single precision would spoil.
+/// Eight or more numbers of double precision side by side, for the steps that single precision would spoil.
 pub trait DoubleLanes:
     Copy + Debug + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
 {

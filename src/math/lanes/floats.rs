@@ -4,10 +4,13 @@ use std::ops::{Add, BitAnd, BitOr, Div, Mul, Sub};
 use super::{DoubleLanes, IntLanes};
 use crate::math::Ray;
 
-/// Numbers in one [`Lanes`].
+/// Numbers in half a row, of which [`Lanes::load`] and [`Lanes::store`] know.
 pub const LANES: usize = 8;
 
-/// Eight numbers side by side, for code that is written once for all instruction sets.
+/// Room in memory for one [`Lanes`] of any width.
+pub const ROW: usize = 16;
+
+/// Eight or more numbers side by side, for code that is written once for all instruction sets.
 ///
 /// Every operation is that of the IEEE standard, rounded to nearest, and never fused. Implementations
 /// differ in speed only.
@@ -26,11 +29,20 @@ pub trait Lanes:
     /// The same number in all lanes.
     fn splat(value: f32) -> Self;
 
-    /// From memory.
+    /// How many numbers, 8 or 16.
+    const N: usize;
+
+    /// The first eight from memory; others are zero.
     fn load(from: &[f32; LANES]) -> Self;
 
-    /// To memory.
+    /// The first eight to memory.
     fn store(self, to: &mut [f32; LANES]);
+
+    /// From the start of a row.
+    fn load_row(from: &[f32; ROW]) -> Self;
+
+    /// To the start of a row.
+    fn store_row(self, to: &mut [f32; ROW]);
 
     /// The smaller number. With NaN the same as [`glam::Vec4::min`].
     fn min(self, other: Self) -> Self;
@@ -74,27 +86,23 @@ pub trait Lanes:
     /// `yes` where the mask is true, else `no`.
     fn select_ints(mask: Self::Mask, yes: Self::Ints, no: Self::Ints) -> Self::Ints;
 
-    /// Origin, direction, `t_min` and `t_max` of a ray.
-    fn load_ray(ray: &Ray) -> Self;
+    /// Origins, directions, `t_min` and `t_max` of rays, as many as there are lanes.
+    fn of_rays(rays: &[&Ray; ROW]) -> [Self; 8];
 
-    /// The ray with these numbers, see [`Self::load_ray`].
-    fn to_ray(self) -> Ray;
-
-    /// Rows and columns exchanged.
-    fn transpose(rows: [Self; LANES]) -> [Self; LANES];
+    /// The rays with these numbers, to the start of a row.
+    fn to_rays(numbers: [Self; 8], rays: &mut [Ray; ROW]);
 
     /// A mask with the lanes whose bits are set.
-    #[inline(always)]
-    fn mask_of_bits(bits: u32) -> Self::Mask {
-        let lane = Self::Ints::load(&[1, 2, 4, 8, 16, 32, 64, 128]);
-        Self::ints_eq(lane & Self::Ints::splat(bits), lane)
-    }
+    fn mask_of_bits(bits: u32) -> Self::Mask;
+
+    /// The bits of all lanes.
+    const ALL: u32 = (1 << Self::N) - 1;
 
     /// The numbers as an array.
     #[inline(always)]
-    fn to_array(self) -> [f32; LANES] {
-        let mut array = [0.0; LANES];
-        self.store(&mut array);
+    fn to_array(self) -> [f32; ROW] {
+        let mut array = [0.0; ROW];
+        self.store_row(&mut array);
         array
     }
 

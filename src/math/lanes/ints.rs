@@ -1,9 +1,9 @@
 use std::fmt::Debug;
 use std::ops::{Add, BitAnd, BitOr, BitXor, Mul};
 
-use super::LANES;
+use super::ROW;
 
-/// Eight 32-bit integers side by side. Sums and products wrap around.
+/// Eight or more 32-bit integers side by side. Sums and products wrap around.
 pub trait IntLanes:
     Copy
     + Debug
@@ -16,11 +16,11 @@ pub trait IntLanes:
     /// The same number in all lanes.
     fn splat(value: u32) -> Self;
 
-    /// From memory.
-    fn load(from: &[u32; LANES]) -> Self;
+    /// From the start of a row.
+    fn load(from: &[u32; ROW]) -> Self;
 
-    /// To memory.
-    fn store(self, to: &mut [u32; LANES]);
+    /// To the start of a row.
+    fn store(self, to: &mut [u32; ROW]);
 
     /// Bits moved up by `BY`, zeros from below; `BY` is in 0..32.
     fn shl<const BY: i32>(self) -> Self;
@@ -36,8 +36,8 @@ pub trait IntLanes:
 
     /// The numbers as an array.
     #[inline(always)]
-    fn to_array(self) -> [u32; LANES] {
-        let mut array = [0; LANES];
+    fn to_array(self) -> [u32; ROW] {
+        let mut array = [0; ROW];
         self.store(&mut array);
         array
     }

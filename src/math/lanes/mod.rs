@@ -1,4 +1,4 @@
-//! Eight numbers side by side, for kernels that are written once and compiled for each instruction
+//! Eight or sixteen numbers side by side, for kernels that are written once and compiled for each instruction
 //! set. Implementations differ in speed only, never in a bit.
 //!
 //! A [`LaneKernel`] is generic over [`Lanes`]; [`run_lanes`] compiles it for the instruction set that
@@ -10,6 +10,12 @@ mod avx2;
 mod avx2_doubles;
 #[cfg(target_arch = "x86_64")]
 mod avx2_ints;
+#[cfg(target_arch = "x86_64")]
+mod avx512;
+#[cfg(target_arch = "x86_64")]
+mod avx512_doubles;
+#[cfg(target_arch = "x86_64")]
+mod avx512_ints;
 mod doubles;
 mod floats;
 mod ints;
@@ -25,7 +31,7 @@ mod vec3_array;
 #[cfg(target_arch = "x86_64")]
 pub(crate) use avx2::Avx2Lanes;
 pub use doubles::DoubleLanes;
-pub use floats::{LANES, Lanes};
+pub use floats::{LANES, Lanes, ROW};
 pub use ints::IntLanes;
 pub(crate) use portable::PortableLanes;
 pub use surface::{FrameLanes, offset_origin_lanes};
@@ -51,6 +57,8 @@ pub fn run_lanes<K: LaneKernel>(isa: Isa, kernel: K) -> K::Answer {
     match isa {
         #[cfg(target_arch = "x86_64")]
         Isa::Avx2 => avx2::run(kernel),
+        #[cfg(target_arch = "x86_64")]
+        Isa::Avx512 => avx512::run(kernel),
         _ => {
             assert!(isa.is_available(), "this processor has no {isa}");
             kernel.run::<PortableLanes>()

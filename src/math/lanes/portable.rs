@@ -4,7 +4,7 @@ use glam::{BVec4A, Vec3, Vec4};
 
 use super::portable_doubles::PortableDoubles;
 use super::portable_ints::PortableInts;
-use super::{LANES, Lanes};
+use super::{LANES, Lanes, ROW};
 use crate::math::Ray;
 
 /// Eight lanes as two vectors of four.
@@ -35,6 +35,19 @@ impl Lanes for PortableLanes {
     type Mask = PortableMask;
     type Ints = PortableInts;
     type Doubles = PortableDoubles;
+
+    const N: usize = LANES;
+
+    #[inline(always)]
+    fn load_row(from: &[f32; ROW]) -> Self {
+        Self(Vec4::from_slice(&from[..4]), Vec4::from_slice(&from[4..8]))
+    }
+
+    #[inline(always)]
+    fn store_row(self, to: &mut [f32; ROW]) {
+        self.0.write_to_slice(&mut to[..4]);
+        self.1.write_to_slice(&mut to[4..8]);
+    }
 
     #[inline(always)]
     fn splat(value: f32) -> Self {
@@ -97,12 +110,12 @@ impl Lanes for PortableLanes {
 
     #[inline(always)]
     fn sqrt(self) -> Self {
-        Self::load(&self.to_array().map(f32::sqrt))
+        Self::load(&self.to_eight().map(f32::sqrt))
     }
 
     #[inline(always)]
     fn to_ints(self) -> PortableInts {
-        PortableInts(self.to_array().map(f32::to_bits))
+        PortableInts(self.to_eight().map(f32::to_bits))
     }
 
     #[inline(always)]
@@ -130,25 +143,52 @@ impl Lanes for PortableLanes {
     }
 
     #[inline(always)]
-    fn load_ray(ray: &Ray) -> Self {
-        let (o, d) = (&ray.origin, &ray.direction);
-        Self::load(&[o.x, o.y, o.z, d.x, d.y, d.z, ray.t_min, ray.t_max])
+    fn mask_of_bits(bits: u32) -> PortableMask {
+        let lane = |lane: usize| bits >> lane & 1 == 1;
+        PortableMask(
+            BVec4A::from_array(std::array::from_fn(lane)),
+            BVec4A::from_array(std::array::from_fn(|i| lane(i + 4))),
+        )
     }
 
     #[inline(always)]
-    fn to_ray(self) -> Ray {
-        let [ox, oy, oz, dx, dy, dz, t_min, t_max] = self.to_array();
-        Ray {
-            origin: Vec3::new(ox, oy, oz),
-            direction: Vec3::new(dx, dy, dz),
-            t_min,
-            t_max,
+    fn of_rays(rays: &[&Ray; ROW]) -> [Self; 8] {
+        let rows: [[f32; 8]; LANES] = std::array::from_fn(|lane| {
+            let (o, d) = (&rays[lane].origin, &rays[lane].direction);
+            [
+                o.x,
+                o.y,
+                o.z,
+                d.x,
+                d.y,
+                d.z,
+                rays[lane].t_min,
+                rays[lane].t_max,
+            ]
+        });
+        std::array::from_fn(|column| Self::load(&rows.map(|row| row[column])))
+    }
+
+    #[inline(always)]
+    fn to_rays(numbers: [Self; 8], rays: &mut [Ray; ROW]) {
+        let columns = numbers.map(Self::to_eight);
+        for (lane, ray) in rays.iter_mut().enumerate().take(LANES) {
+            let [ox, oy, oz, dx, dy, dz, t_min, t_max] = columns.map(|column| column[lane]);
+            *ray = Ray {
+                origin: Vec3::new(ox, oy, oz),
+                direction: Vec3::new(dx, dy, dz),
+                t_min,
+                t_max,
+            };
         }
     }
+}
 
+impl PortableLanes {
     #[inline(always)]
-    fn transpose(rows: [Self; LANES]) -> [Self; LANES] {
-        let rows = rows.map(Self::to_array);
-        std::array::from_fn(|column| Self::load(&rows.map(|row| row[column])))
+    pub(super) fn to_eight(self) -> [f32; LANES] {
+        let mut eight = [0.0; LANES];
+        self.store(&mut eight);
+        eight
     }
 }

@@ -31,7 +31,8 @@ impl DoubleLanes for PortableDoubles {
 
     #[inline(always)]
     fn widen(from: PortableLanes) -> Self {
-        Self(from.to_array().map(f64::from))
+        let from = from.to_eight();
+        Self(from.map(f64::from))
     }
 
     #[inline(always)]

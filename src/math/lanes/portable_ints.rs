@@ -1,6 +1,6 @@
 use std::ops::{Add, BitAnd, BitOr, BitXor, Mul};
 
-use super::{IntLanes, LANES};
+use super::{IntLanes, LANES, ROW};
 
 /// Eight integers as an array.
 #[derive(Clone, Copy, Debug)]
@@ -34,13 +34,13 @@ impl IntLanes for PortableInts {
     }
 
     #[inline(always)]
-    fn load(from: &[u32; LANES]) -> Self {
-        Self(*from)
+    fn load(from: &[u32; ROW]) -> Self {
+        Self(std::array::from_fn(|lane| from[lane]))
     }
 
     #[inline(always)]
-    fn store(self, to: &mut [u32; LANES]) {
-        *to = self.0;
+    fn store(self, to: &mut [u32; ROW]) {
+        to[..LANES].copy_from_slice(&self.0);
     }
 
     #[inline(always)]

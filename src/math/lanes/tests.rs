@@ -1,12 +1,12 @@
 use glam::{DVec3, Vec3};
 
 use super::{
-    DoubleLanes, FrameLanes, IntLanes, LANES, LaneKernel, Lanes, Vec3Array, Vec3Lanes,
+    DoubleLanes, FrameLanes, IntLanes, LANES, LaneKernel, Lanes, ROW, Vec3Array, Vec3Lanes,
     offset_origin_lanes, run_lanes,
 };
-use crate::math::{Frame, Isa, offset_origin};
+use crate::math::{Frame, Isa, Ray, offset_origin};
 
-const ODD: [f32; LANES] = [
+const ODD: [f32; ROW] = [
     0.0,
     -0.0,
     1.5,
@@ -15,9 +15,34 @@ const ODD: [f32; LANES] = [
     f32::NAN,
     1e-42,
     -3e38,
+    1.0,
+    2.0,
+    -3.0,
+    0.1,
+    1e30,
+    f32::NEG_INFINITY,
+    -0.0,
+    5e-324_f64 as f32,
 ];
-const EVEN: [f32; LANES] = [2.0, 0.0, 1.5, 4.0, -1.0, 1.0, 1e-42, 2.0];
-const BITS: [u32; LANES] = [
+const EVEN: [f32; ROW] = [
+    2.0,
+    0.0,
+    1.5,
+    4.0,
+    -1.0,
+    1.0,
+    1e-42,
+    2.0,
+    f32::NAN,
+    -2.0,
+    3.0,
+    1e-3,
+    1e30,
+    0.0,
+    7.0,
+    -1.0,
+];
+const BITS: [u32; ROW] = [
     0,
     1,
     0x8000_0000,
@@ -26,56 +51,123 @@ const BITS: [u32; LANES] = [
     77,
     0x7FFF_FFFF,
     6,
+    2,
+    3,
+    77,
+    0xDEAD_BEEF,
+    99,
+    0x5555_5555,
+    0xAAAA_AAAA,
+    12,
 ];
 
-/// Every operation on one pair of vectors, as bits.
+/// The numbers of a row from `first` on, at the start of another.
+fn from<T: Copy + Default>(row: &[T; ROW], first: usize) -> [T; ROW] {
+    std::array::from_fn(|lane| row.get(first + lane).copied().unwrap_or_default())
+}
+
+/// What `part` gives for all parts of a row, put together.
+fn row_by_row<L: Lanes>(part: impl Fn(usize) -> Vec<[u32; ROW]>) -> Vec<[u32; ROW]> {
+    let mut whole = part(0);
+    for first in (L::N..ROW).step_by(L::N) {
+        for (row, rest) in whole.iter_mut().zip(part(first)) {
+            row[first..first + L::N].copy_from_slice(&rest[..L::N]);
+        }
+    }
+    whole
+}
+
+/// Every operation on one pair of rows, as bits.
 struct All;
 
 impl LaneKernel for All {
-    type Answer = Vec<[u32; LANES]>;
+    type Answer = Vec<[u32; ROW]>;
 
     fn run<L: Lanes>(self) -> Self::Answer {
-        let (a, b) = (L::load(&ODD), L::load(&EVEN));
-        let (i, j) = (L::Ints::load(&BITS), L::Ints::splat(0x9E37_79B9));
-        let picked = |mask: L::Mask| L::select(mask, a, b);
-        let rows = std::array::from_fn(|row| L::load(&ODD.map(|value| value + row as f32)));
-        let mut numbers = vec![a + b, a - b, a * b, a / b, a.sqrt(), a.neg(), b.copysign(a)];
-        numbers.extend([a.abs(), L::of_ints(i.shr::<1>()), L::from_ints(i)]);
-        numbers.extend([
-            picked(a.lt(b)),
-            picked(a.le(b)),
-            picked(a.eq(b)),
-            picked(a.gt(b)),
-        ]);
-        numbers.extend([
-            picked(L::ints_eq(i, L::Ints::splat(77))),
-            picked(L::mask_of_bits(0x53)),
-        ]);
-        numbers.extend(L::transpose(rows));
-        let wide = L::Doubles::widen(a) / L::Doubles::splat(3.0) + L::Doubles::widen(b);
-        numbers.extend([wide.narrow(), wide.sqrt().narrow()]);
-        let v = Vec3Lanes::new(a, b, b);
-        let w = Vec3Lanes::new(b, a, a);
-        let unit = v.unit_cross(w);
-        numbers.extend([unit.x, unit.y, unit.z, v.normalize_or(w).x]);
-        let mut all: Vec<_> = numbers
-            .into_iter()
-            .map(|n| n.to_array().map(bits))
-            .collect();
-        let ints = [
-            i + j,
-            i * j,
-            i & j,
-            i | j,
-            i ^ j,
-            i.shl::<5>(),
-            i.shr::<7>(),
-            i.sar::<31>(),
-        ];
-        all.extend(ints.map(L::Ints::to_array));
-        assert_eq!(i.reverse_bits().to_array(), BITS.map(u32::reverse_bits));
-        all.push(L::select_ints(a.lt(b), i, j).to_array());
-        all
+        row_by_row::<L>(all::<L>)
+    }
+}
+
+fn all<L: Lanes>(first: usize) -> Vec<[u32; ROW]> {
+    let (a, b) = (
+        L::load_row(&from(&ODD, first)),
+        L::load_row(&from(&EVEN, first)),
+    );
+    let (i, j) = (
+        L::Ints::load(&from(&BITS, first)),
+        L::Ints::splat(0x9E37_79B9),
+    );
+    let picked = |mask: L::Mask| L::select(mask, a, b);
+    let mut numbers = vec![a + b, a - b, a * b, a / b, a.sqrt(), a.neg(), b.copysign(a)];
+    numbers.extend([
+        a.abs(),
+        L::of_ints(i.shr::<1>()),
+        L::from_ints(i),
+        a.min(b),
+        a.max(b),
+    ]);
+    numbers.extend([
+        picked(a.lt(b)),
+        picked(a.le(b)),
+        picked(a.eq(b)),
+        picked(a.gt(b)),
+    ]);
+    numbers.push(picked(L::ints_eq(i, L::Ints::splat(77))));
+    numbers.push(picked(L::mask_of_bits(0xA553 >> first)));
+    numbers.push(picked(L::without(a.lt(b), a.lt(L::splat(0.0)))));
+    let wide = L::Doubles::widen(a) / L::Doubles::splat(3.0) + L::Doubles::widen(b);
+    numbers.extend([wide.narrow(), wide.sqrt().narrow()]);
+    let v = Vec3Lanes::new(a, b, b);
+    let w = Vec3Lanes::new(b, a, a);
+    let unit = v.unit_cross(w);
+    numbers.extend([unit.x, unit.y, unit.z, v.normalize_or(w).x]);
+    let mut all: Vec<_> = numbers
+        .into_iter()
+        .map(|n| n.to_array().map(bits))
+        .collect();
+    let ints = [
+        i + j,
+        i * j,
+        i & j,
+        i | j,
+        i ^ j,
+        i.shl::<5>(),
+        i.shr::<7>(),
+        i.sar::<31>(),
+    ];
+    all.extend(ints.map(L::Ints::to_array));
+    all.push(i.reverse_bits().to_array());
+    all.push(L::select_ints(a.lt(b), i, j).to_array());
+    assert_eq!(L::bits(L::mask_of_bits(0x53)), 0x53);
+    assert_eq!(L::bits(L::mask_of_bits(L::ALL)), L::ALL);
+    all
+}
+
+/// Rays in and out again.
+struct Rays;
+
+impl LaneKernel for Rays {
+    type Answer = Vec<Ray>;
+
+    fn run<L: Lanes>(self) -> Self::Answer {
+        let given: [Ray; ROW] = std::array::from_fn(|lane| {
+            let at = |i: usize| (10 * lane + i) as f32;
+            let ray = Ray::new(
+                Vec3::new(at(0), at(1), at(2)),
+                Vec3::new(at(3), at(4), at(5)),
+            );
+            Ray {
+                t_min: at(6),
+                t_max: at(7),
+                ..ray
+            }
+        });
+        let numbers = L::of_rays(&given.each_ref());
+        assert_eq!(numbers[4].to_array()[1], 14.0);
+        let mut rays = [Ray::new(Vec3::ZERO, Vec3::ZERO); ROW];
+        L::to_rays(numbers, &mut rays);
+        assert_eq!(rays[..L::N], given[..L::N]);
+        rays[..LANES].to_vec()
     }
 }
 
@@ -93,10 +185,16 @@ fn every_instruction_set_gives_the_same_bits() {
     let portable = run_lanes(Isa::Portable, All);
     for isa in Isa::available() {
         assert_eq!(run_lanes(isa, All), portable, "{isa}");
+        assert_eq!(
+            run_lanes(isa, Rays),
+            run_lanes(Isa::Portable, Rays),
+            "{isa}"
+        );
     }
-    let sums: [u32; LANES] = std::array::from_fn(|lane| bits(ODD[lane] + EVEN[lane]));
+    let sums: [u32; ROW] = std::array::from_fn(|lane| bits(ODD[lane] + EVEN[lane]));
     let roots = ODD.map(|value| bits(value.sqrt()));
     assert_eq!((portable[0], portable[4]), (sums, roots));
+    assert!(portable.contains(&BITS.map(u32::reverse_bits)));
 }
 
 /// Triangles of all shapes and sizes, some without area.

@@ -1,5 +1,5 @@
 use super::{PathSampler, Points, Slot, dimension};
-use crate::math::{IntLanes, LANES, Lanes};
+use crate::math::{IntLanes, Lanes, ROW};
 use crate::sampling::digital_net::{PASCAL, index_in_pair};
 use crate::sampling::scramble::{LAINE_KARRAS, MIX_32};
 
@@ -7,15 +7,15 @@ use crate::sampling::scramble::{LAINE_KARRAS, MIX_32};
 #[derive(Clone, Copy, Debug)]
 pub struct PathSamplerLanes<L: Lanes> {
     key: [L::Ints; 2],
-    index: [u32; LANES],
+    index: [u32; ROW],
 }
 
 impl<L: Lanes> PathSamplerLanes<L> {
     /// Those of up to eight paths; of what is missing anything.
     #[inline(always)]
     pub fn new(samplers: impl Iterator<Item = PathSampler>) -> Self {
-        let (mut x, mut y, mut index) = ([0; LANES], [0; LANES], [0; LANES]);
-        for (lane, sampler) in samplers.enumerate().take(LANES) {
+        let (mut x, mut y, mut index) = ([0; ROW], [0; ROW], [0; ROW]);
+        for (lane, sampler) in samplers.enumerate().take(L::N) {
             x[lane] = sampler.key[0];
             y[lane] = sampler.key[1];
             index[lane] = sampler.index;
@@ -55,8 +55,8 @@ impl<L: Lanes> PathSamplerLanes<L> {
     #[inline(always)]
     fn index_in_pair(&self, pair: usize) -> L::Ints {
         let mut last = (self.index[0], index_in_pair(pair, self.index[0]));
-        let mut indices = [last.1; LANES];
-        for (to, &index) in indices.iter_mut().zip(&self.index) {
+        let mut indices = [last.1; ROW];
+        for (to, &index) in indices.iter_mut().zip(&self.index).take(L::N) {
             if index != last.0 {
                 last = (index, index_in_pair(pair, index));
             }
@@ -104,7 +104,7 @@ mod tests {
     struct Draw<'a>(&'a [PathSampler], u32, Slot);
 
     impl LaneKernel for Draw<'_> {
-        type Answer = [[f32; LANES]; 2];
+        type Answer = [[f32; ROW]; 2];
 
         fn run<L: Lanes>(self) -> Self::Answer {
             let lanes = PathSamplerLanes::<L>::new(self.0.iter().copied());
@@ -126,7 +126,7 @@ mod tests {
             Slot::LightPoint(0),
             Slot::LightPoint(3),
         ];
-        for eight in samplers.chunks(LANES) {
+        for eight in samplers.chunks(8) {
             for (bounce, slot) in (0..5).flat_map(|bounce| slots.map(|slot| (bounce, slot))) {
                 for isa in Isa::available() {
                     let [x, y] = run_lanes(isa, Draw(eight, bounce, slot));
