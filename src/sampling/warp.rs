@@ -1,4 +1,4 @@
-use std::f32::consts::{FRAC_1_PI, TAU};
+use std::f32::consts::{FRAC_1_PI, FRAC_PI_4, TAU};
 
 use glam::{Vec2, Vec3};
 
@@ -103,8 +103,7 @@ fn sin_cos_eighth(x: f32) -> (f32, f32) {
 }
 
 /// Of sin(π/4 · x) / x as a polynomial of x², the one that is least wrong over [−1, 1].
-pub(super) const SIN_EIGHTH: [f32; 4] =
-    [0.785_398_2, -0.080_745_436, 0.002_490_007, -3.595_450_8e-5];
+pub(super) const SIN_EIGHTH: [f32; 4] = [FRAC_PI_4, -0.080_745_436, 0.002_490_007, -3.595_451e-5];
 
 /// Of cos(π/4 · x), likewise.
 pub(super) const COS_EIGHTH: [f32; 5] = [

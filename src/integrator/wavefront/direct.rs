@@ -159,7 +159,7 @@ impl Shade<'_, '_> {
         let origin = offset_origin_lanes(surface.departure, surface.error, normal, wi);
         let point = Vec3Lanes::load(&samples.point);
         let error = point.abs().scale(L::splat(gamma(8)));
-        let target = offset_origin_lanes(point, error, Vec3Lanes::load(&samples.normal), wi.neg());
+        let target = offset_origin_lanes(point, error, Vec3Lanes::load(&samples.normal), -wi);
         let segment = target - origin;
         let direction = Vec3Lanes::select(L::mask_of_bits(samples.infinite), wi, segment);
         let infinite = L::mask_of_bits(samples.infinite);

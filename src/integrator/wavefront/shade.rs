@@ -43,7 +43,7 @@ impl<L: Lanes> Group<L> {
     #[inline(always)]
     pub(super) fn lit_normal(&self) -> Vec3Lanes<L> {
         let normal = self.surface.shading_normal;
-        Vec3Lanes::select(self.wo_z.lt(L::splat(0.0)), normal.neg(), normal)
+        Vec3Lanes::select(self.wo_z.lt(L::splat(0.0)), -normal, normal)
     }
 }
 
@@ -87,7 +87,7 @@ impl<'s> Shade<'_, 's> {
         }
         let states = self.paths.states[first..].iter();
         let samplers = states.map(|state| self.samplers[state.id as usize]);
-        let wo = Vec3Lanes::load(&directions).neg();
+        let wo = -Vec3Lanes::load(&directions);
         let agree = wo.dot(surface.geometric_normal) * wo.dot(surface.shading_normal);
         surface.shading_normal = Vec3Lanes::select(
             agree.le(L::splat(0.0)),

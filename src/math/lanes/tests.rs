@@ -208,7 +208,14 @@ fn edges() -> impl Iterator<Item = Pairs> {
             match i % 3 {
                 0 => (a, b),
                 1 => (a, a * 3.0 + b * 1e-6),
-                _ => (a * 1e-20, if i % 7 == 0 { Vec3::ZERO } else { b * 1e-20 }),
+                _ => (
+                    a * 1e-20,
+                    if i.is_multiple_of(7) {
+                        Vec3::ZERO
+                    } else {
+                        b * 1e-20
+                    },
+                ),
             }
         })
     })

@@ -1,4 +1,4 @@
-use std::ops::{Add, Mul, Sub};
+use std::ops::{Add, Mul, Neg, Sub};
 
 use glam::Vec3;
 
@@ -66,12 +66,6 @@ impl<L: Lanes> Vec3Lanes<L> {
     #[inline(always)]
     pub fn abs(self) -> Self {
         Self::new(self.x.abs(), self.y.abs(), self.z.abs())
-    }
-
-    /// The other way.
-    #[inline(always)]
-    pub fn neg(self) -> Self {
-        Self::new(self.x.neg(), self.y.neg(), self.z.neg())
     }
 
     /// The largest component.
@@ -179,5 +173,14 @@ impl<L: Lanes> Mul for Vec3Lanes<L> {
     #[inline(always)]
     fn mul(self, other: Self) -> Self {
         Self::new(self.x * other.x, self.y * other.y, self.z * other.z)
+    }
+}
+
+impl<L: Lanes> Neg for Vec3Lanes<L> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self::new(self.x.neg(), self.y.neg(), self.z.neg())
     }
 }
