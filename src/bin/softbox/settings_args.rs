@@ -87,7 +87,7 @@ pub(crate) struct SettingsArgs {
     /// Effort for the hierarchy: fast, standard, or high, which goes on while the picture renders
     #[arg(long, value_name = "QUALITY", value_parser = values::named::<BvhQuality>)]
     pub(crate) bvh_quality: Option<BvhQuality>,
-    /// Instruction set: portable or avx2 [default: SOFTBOX_ISA, else the best of this processor]
+    /// Instruction set: portable, avx2 or avx512 [default: SOFTBOX_ISA, else the best of this processor]
     #[arg(long, value_parser = Isa::usable)]
     pub(crate) isa: Option<Isa>,
     /// Reproduce the course program's picture with its errors: light, exposure, gamma, view, normals

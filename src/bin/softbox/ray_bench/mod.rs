@@ -49,7 +49,7 @@ pub(crate) struct Protocol {
     /// Numbers of threads
     #[arg(long, value_name = "N,N", default_value = "1,2", value_delimiter = ',', value_parser = count)]
     pub(crate) threads: Vec<usize>,
-    /// Instruction set that ours traces with: portable or avx2 [default: the best of this processor]
+    /// Instruction set that ours traces with: portable, avx2 or avx512 [default: the best of this processor]
     #[arg(long, value_parser = Isa::usable)]
     pub(crate) isa: Option<Isa>,
     /// Kinds of rays
