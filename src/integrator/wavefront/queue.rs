@@ -48,17 +48,45 @@ impl DirectQueues {
         self.shadow.carried.push((contribution, owner));
     }
 
-    /// Traces all rays and adds what they bring to the `radiance` of their paths, in the order in
-    /// which they came, shadow rays first.
+    /// Traces all rays and adds what they bring to the `radiance` of their paths in the order of
+    /// the plan: gathering rays come first there.
     pub(super) fn trace(
         &mut self,
         tracer: &PathTracer<'_>,
         radiance: &mut [Rgb],
         counts: &mut PathCounts,
     ) {
+        self.trace_gathering(tracer, radiance, counts);
+        self.trace_shadow(tracer, radiance, counts);
+    }
+
+    fn trace_gathering(
+        &mut self,
+        tracer: &PathTracer<'_>,
+        radiance: &mut [Rgb],
+        counts: &mut PathCounts,
+    ) {
+        self.hits.clear();
+        self.hits.resize(self.gather.rays.len(), Hit::MISS);
         let aggregate = tracer.scene.aggregate();
+        aggregate.closest_hit(&self.gather.rays, &mut self.hits, &mut counts.trace);
+        counts.closest_rays += self.gather.rays.len() as u64;
+        for (i, &(factor, owner)) in self.gather.carried.iter().enumerate() {
+            let gathered = tracer.gathered(&self.gather.rays[i], &self.hits[i]);
+            radiance[owner as usize] += factor * gathered;
+        }
+        self.gather.clear();
+    }
+
+    fn trace_shadow(
+        &mut self,
+        tracer: &PathTracer<'_>,
+        radiance: &mut [Rgb],
+        counts: &mut PathCounts,
+    ) {
         self.occluded.clear();
         self.occluded.resize(self.shadow.rays.len(), false);
+        let aggregate = tracer.scene.aggregate();
         aggregate.any_hit(&self.shadow.rays, &mut self.occluded, &mut counts.trace);
         counts.shadow_rays += self.shadow.rays.len() as u64;
         for (&(contribution, owner), &occluded) in self.shadow.carried.iter().zip(&self.occluded) {
@@ -67,14 +95,5 @@ impl DirectQueues {
             }
         }
         self.shadow.clear();
-        self.hits.clear();
-        self.hits.resize(self.gather.rays.len(), Hit::MISS);
-        aggregate.closest_hit(&self.gather.rays, &mut self.hits, &mut counts.trace);
-        counts.closest_rays += self.gather.rays.len() as u64;
-        for (i, &(factor, owner)) in self.gather.carried.iter().enumerate() {
-            let gathered = tracer.gathered(&self.gather.rays[i], &self.hits[i]);
-            radiance[owner as usize] += factor * gathered;
-        }
-        self.gather.clear();
     }
 }
