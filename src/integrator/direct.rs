@@ -14,6 +14,10 @@ use crate::sampling::{
 use crate::scene::PreparedScene;
 use crate::settings::Mode;
 
+/// So many lights without extent are all sampled at every vertex: what they send has no noise, while
+/// choosing one of them has.
+const FEW: usize = 8;
+
 /// One direct light sample of a vertex.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum DirectSample {
@@ -50,7 +54,11 @@ impl DirectPlan {
         let samples = match settings.mode {
             _ if settings.max_depth.0 == 0 => Vec::new(),
             Mode::Importance => lights.iter().copied().flat_map(per_light).collect(),
-            Mode::Best if scene.is_course_compatible() => {
+            Mode::Best
+                if scene.is_course_compatible()
+                    || (lights.len() <= FEW
+                        && lights.iter().all(|&light| scene.light(light).is_delta())) =>
+            {
                 lights.iter().copied().flat_map(per_light).collect()
             }
             Mode::Best if scene.light_sampler().is_empty() => Vec::new(),
