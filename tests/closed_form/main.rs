@@ -9,7 +9,6 @@ use std::f64::consts::PI;
 use glam::{DMat4, DVec3};
 use softbox::camera::Camera;
 use softbox::color::Rgb;
-use softbox::integrator::PathSettings;
 use softbox::scene::{LightKind, Scene, SceneBuilder, Surface};
 use softbox::settings::{MaxDepth, Mode};
 use support::measure::{camera, measure, prepared, settings};
