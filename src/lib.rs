@@ -28,17 +28,31 @@
 //!     └ start: camera ray                                          integrator, camera
 //!        trace a batch of rays for their closest hits              geometry → bvh
 //!        arrive: emission, surface, material                       scene, light, bsdf
-//!        direct light: shadow rays, traced as a batch for any hit  light, geometry
+//!        direct light: a light from the tree, a point on it        light
+//!        … shadow rays, traced as a batch for any hit              geometry
 //!        scatter: next ray, Russian roulette                       bsdf, sampling
 //!     add the finished paths in the order of their numbers         film
 //! pass done → snapshot → host                                      session
 //! ```
+//! Plain surfaces (diffuse, without emission, not of an instance) are shaded eight or sixteen paths
+//! at a time, the others one by one. A kernel is written once over [`math::Lanes`] and compiled for each
+//! instruction set ([`math::run_lanes`]); `wavefront`, `light`, `sampling` and the sweep have such.
+//!
+//! # Noise
+//! - The samples of a pixel are points of an Owen-scrambled net ([`sampling::PathSampler`]), not
+//!   independent numbers; `replicates` deals them out to sequences that are, for honest errors.
+//! - One light is chosen per sample, by what it may give at the vertex ([`light::LightTree`]), and a
+//!   point on it by solid angle or nearly so; parallelograms are sampled as a whole.
+//! - A diffuse vertex under a single parallelogram takes light samples alone; elsewhere they share with
+//!   the scattered ray by multiple importance. A constant sky is left to the scattered ray.
+//! - Roulette lets every path of at least a quarter of the full throughput live.
 //!
 //! # Invariants
 //! - A sample is a pure function of (scene, settings, seed, pixel, sample number). Random numbers
 //!   are addressed by bounce and [`sampling::Slot`], never drawn in sequence. Threads, tiles,
 //!   passes and pauses change no bit of the picture.
-//! - [`integrator::reference()`] and [`integrator::Wavefront`] give the same bits.
+//! - [`integrator::reference()`] and [`integrator::Wavefront`] give the same bits with every
+//!   instruction set ([`math::Isa`]) and any length of batch.
 //! - [`integrator::reference_f64`] repeats every path in double precision with formulas of its own;
 //!   but for the few that rounding sends elsewhere, both give the same radiance.
 //! - Tracing is a batch: [`geometry::Aggregate::closest_hit`], [`geometry::Aggregate::any_hit`].
@@ -53,6 +67,7 @@
 //! - No module below the program knows windows, threads (but for `session`), the clock (but for
 //!   `session` and build times) or files (but for `io`).
 //! - A [`session::Workbench`] renders the same pictures in steps, for `bench` to score.
+//! - `unsafe` has two rooms: `math::lanes` and `bvh::simd`, for instructions of the processor.
 //! - The host says every frame what it wants to see; only `session` decides what that costs.
 //! - Radiance that is NaN, infinite or negative never reaches the film; it is counted.
 //!
@@ -64,11 +79,14 @@
 //! | to add | touch |
 //! |---|---|
 //! | a material | `bsdf/`: its file and variant; `scene::Surface`; `io` reads it; a chi-square case |
-//! | a light | `light/`: its file, variant and bounds for the tree; `scene::LightKind`; a chi-square case |
+//! | a light | `light/`: its file, variant and bounds for the tree; `scene::LightKind`; a chi-square case; once more in `integrator/double/` |
+//! | a random number | a variant of [`sampling::Slot`] |
+//! | a step of the path | `integrator/path.rs`, and in lanes where `wavefront/shade.rs` takes it; `tests/both_tracers` |
+//! | an instruction set | [`math::Isa`] and an implementation of [`math::Lanes`] |
 //! | a setting | [`settings`]; a flag in the program's `args`, a row in a panel |
 //! | a figure of `bench` | [`study`]; the program's `bench/` prints it |
 //! | a file format | `io/`: a file, and a line where the extension is looked up |
-//! | a faster traversal | `bvh/`, `geometry/aggregate.rs`; callers see the batch interface |
+//! | a faster traversal | `bvh/`, `geometry/aggregate.rs`, `geometry/sweep/`; callers see the batch interface |
 
 pub mod bsdf;
 pub mod bvh;

@@ -39,6 +39,9 @@ const RESERVED: [(&str, &[&str]); 7] = [
     ("println", &[]),
 ];
 
+/// Where instructions of the processor are called by name.
+const UNSAFE_ROOMS: [&str; 2] = ["src/math/lanes/", "src/bvh/simd/"];
+
 /// Lines of a file without its test module.
 const MOST_LINES: usize = 500;
 
@@ -313,6 +316,21 @@ fn only_the_viewer_knows_the_window() {
                 assert!(!code.contains(path), "{}: {path}", source.name);
             }
         }
+    }
+}
+
+#[test]
+fn unsafe_code_has_its_rooms() {
+    let all = sources("src");
+    let has_it = |source: &Source| places(&code(&source.text), "unsafe").next().is_some();
+    for room in UNSAFE_ROOMS {
+        assert!(all.iter().any(|s| s.name.starts_with(room) && has_it(s)));
+    }
+    for source in all.iter().filter(|source| has_it(source)) {
+        let is_allowed = UNSAFE_ROOMS
+            .iter()
+            .any(|room| source.name.starts_with(room));
+        assert!(is_allowed, "{}", source.name);
     }
 }
 

@@ -169,8 +169,8 @@ impl PathTracer<'_> {
         }
     }
 
-    /// Light sample `number` of the plan for a surface, and its weight; its density counts the choice of its light. `None` for a sample of the hemisphere
-    /// and where the light sends nothing.
+    /// Light sample `number` of the plan for a surface, and its weight; its density counts the choice
+    /// of its light. `None` for a sample of the hemisphere and where the light sends nothing.
     pub(super) fn light_sample(
         &self,
         (sampler, bounce): (PathSampler, u32),

@@ -73,7 +73,8 @@ enum Points {
 /// the first 2ᵏ samples have one point in each elementary interval of area 2⁻ᵏ (and so have the
 /// next 2ᵏ). The pixel's own, and the scatter and (first) light slots of the first three bounces
 /// are pairs of one net, so that they are spread well together; every other slot has the points in
-/// an order of its own, but for roulette, whose numbers are independent. Different pixels, seeds and replicates are independent.
+/// an order of its own, but for roulette, whose numbers are independent. Different pixels, seeds and
+/// replicates are independent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PathSampler {
     /// Of seed, pixel and replicate.
