@@ -3,7 +3,7 @@ use std::time::Instant;
 
 use super::RenderJob;
 use super::adaptive::close_pixels;
-use super::pass::render_pass;
+use super::pass::{Stop, render_pass};
 use super::workers::Workers;
 use crate::camera::RayCamera;
 use crate::color::Rgb;
@@ -117,7 +117,10 @@ impl Workbench {
                 exposure.settings.integrator,
                 &mut exposure.film,
                 target,
-                stop,
+                Stop {
+                    at_once: stop,
+                    when_due: &|| false,
+                },
             );
             exposure.cpu_seconds += self.workers.cpu_seconds() - busy;
             exposure.wall_seconds += started.elapsed().as_secs_f64();

@@ -11,7 +11,7 @@ use crate::film::{Film, FilmSummary};
 use crate::integrator::{PathCounts, PathSettings, PathTracer};
 use crate::scene::PreparedScene;
 use crate::session::first_hit_pass::first_hit_pass;
-use crate::session::pass::{clear_pass, render_pass};
+use crate::session::pass::{Stop, clear_pass, render_pass};
 
 /// How far a pass may go beyond the time limit: this share of it, and as many seconds.
 const GRACE: f64 = 0.1;
@@ -214,14 +214,10 @@ impl Picture {
     }
 
     /// Takes samples until the end of the pass or until `stop`.
-    pub(super) fn advance(
-        &mut self,
-        workers: &Workers,
-        scene: &PreparedScene,
-        stop: &(dyn Fn() -> bool + Sync),
-    ) {
+    pub(super) fn advance(&mut self, workers: &Workers, scene: &PreparedScene, stop: Stop<'_>) {
         let started = Instant::now();
-        self.film_is_clear = self.film_is_clear || clear_pass(workers, &mut self.film, stop);
+        self.film_is_clear =
+            self.film_is_clear || clear_pass(workers, &mut self.film, stop.at_once);
         if !self.film_is_clear {
             return;
         }
@@ -231,8 +227,9 @@ impl Picture {
         let target = next_target(settings, self.done, self.last_pass, left);
         // The last pass was made to fit; one that takes much longer than foreseen is cut.
         let limit = left.map(|left| left + GRACE * settings.stop.seconds.unwrap_or(0.0) + GRACE);
-        let is_over =
-            || stop() || limit.is_some_and(|limit| started.elapsed().as_secs_f64() >= limit);
+        let is_due = || {
+            (stop.when_due)() || limit.is_some_and(|limit| started.elapsed().as_secs_f64() >= limit)
+        };
         let busy = workers.cpu_seconds();
         let (counts, is_complete) = render_pass(
             workers,
@@ -240,7 +237,10 @@ impl Picture {
             settings.integrator,
             &mut self.film,
             target,
-            &is_over,
+            Stop {
+                when_due: &is_due,
+                ..stop
+            },
         );
         self.counts += counts;
         self.cpu_seconds += workers.cpu_seconds() - busy;

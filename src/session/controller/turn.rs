@@ -8,6 +8,7 @@ use super::refiner::Refiner;
 use super::{Shared, lock};
 use crate::scene::{PrepareCache, PrepareSettings, PreparedScene, prepare_with};
 use crate::session::change::Change;
+use crate::session::pass::Stop;
 use crate::session::workers::{Workers, lower_priority};
 use crate::session::{RenderJob, SessionState};
 
@@ -284,9 +285,11 @@ impl<'a> Turn<'a> {
             .max(self.publish_cost * PUBLISH_SHARE);
         let due = self.published + every;
         // Long passes are cut where the next snapshot is due; the film stays whole.
-        picture.advance(&self.workers, scene, &|| {
-            is_interrupted() || self.refiner.has_news() || Instant::now() >= due
-        });
+        let stop = Stop {
+            at_once: &is_interrupted,
+            when_due: &|| self.refiner.has_news() || Instant::now() >= due,
+        };
+        picture.advance(&self.workers, scene, stop);
         shared.update_status(|status| picture.describe(status));
         self.has_news = picture.has_samples();
         if Instant::now() >= due && !is_interrupted() {
