@@ -42,7 +42,8 @@
 //! - The samples of a pixel are points of an Owen-scrambled net ([`sampling::PathSampler`]), not
 //!   independent numbers; `replicates` deals them out to sequences that are, for honest errors.
 //! - One light is chosen per sample, by what it may give at the vertex ([`light::LightTree`]), and a
-//!   point on it by solid angle or nearly so; parallelograms are sampled as a whole.
+//!   point on it by solid angle or nearly so; parallelograms are sampled as a whole. Where all lights
+//!   are a few without extent, each is sampled.
 //! - A diffuse vertex under a single parallelogram takes light samples alone; elsewhere they share with
 //!   the scattered ray by multiple importance. A constant sky is left to the scattered ray.
 //! - Roulette lets every path of at least a quarter of the full throughput live.
