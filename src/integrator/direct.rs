@@ -94,11 +94,18 @@ impl DirectPlan {
         self.samples.len()
     }
 
-    /// The weight of each sample when all lights share them.
-    pub(super) fn any_light_weight(&self) -> Option<f32> {
-        match self.samples.first() {
-            Some(&DirectSample::AnyLight { weight }) => Some(weight),
-            _ => None,
+    /// The light that every sample goes to, if there is only one, and the weight of each sample.
+    pub(super) fn only_light(&self, scene: &PreparedScene) -> Option<(u32, f32)> {
+        let first = self.samples.first()?;
+        match *first {
+            DirectSample::AnyLight { weight } => {
+                Some((scene.light_sampler().only_light()?, weight))
+            }
+            DirectSample::Light { light, weight } => {
+                let is_same = |sample: &DirectSample| sample == first;
+                self.samples.iter().all(is_same).then_some((light, weight))
+            }
+            DirectSample::Hemisphere { .. } => None,
         }
     }
 

@@ -149,8 +149,9 @@ impl<'a> PathTracer<'a> {
     /// The path tracer of `scene` seen by `camera`.
     pub fn new(scene: &'a PreparedScene, camera: &'a RayCamera, settings: PathSettings) -> Self {
         let plan = DirectPlan::new(scene, &settings);
-        let only_parallelogram = (plan.any_light_weight())
-            .and_then(|weight| Some((scene.only_parallelogram()?, weight)));
+        let only_parallelogram = plan
+            .only_light(scene)
+            .and_then(|(light, weight)| Some((scene.light(light).as_parallelogram()?, weight)));
         Self {
             scene,
             camera,

@@ -9,7 +9,7 @@ use super::{PlainSurfaces, SurfaceInteraction};
 use crate::bsdf::Bsdf;
 use crate::color::Rgb;
 use crate::geometry::{Aggregate, Instance, InstanceStats, Shapes};
-use crate::light::{Light, LightHit, LightSampleContext, LightSampler, ParallelogramLight};
+use crate::light::{Light, LightHit, LightSampleContext, LightSampler};
 use crate::math::Normalization;
 
 /// Index of the flat triangles in [`Tables::smooth`].
@@ -285,12 +285,6 @@ impl PreparedScene {
     /// Chooses among the parts of all lights; nothing in course-compatible scenes.
     pub fn light_sampler(&self) -> &LightSampler {
         &self.tables.sampler
-    }
-
-    /// The light that all light samples go to, if that is a parallelogram.
-    pub fn only_parallelogram(&self) -> Option<ParallelogramLight<'_>> {
-        let only = self.light_sampler().only_light()?;
-        self.light(only).as_parallelogram()
     }
 
     /// True when a diffuse surface needs light samples only: there is no sky, and no light can be met
