@@ -4,7 +4,7 @@ use super::block::Block;
 use super::triangle::{self, Shear};
 use super::{Hit, Shapes, Sphere};
 use crate::bvh::{BLOCK, Bvh, LeafBlocks, Leaves, SlabRay, padded};
-use crate::math::{Aabb, Ray};
+use crate::math::{Aabb, Ray, set_bits};
 
 /// The primitives in the order of the leaves, with their vertices at hand.
 #[derive(Clone, Debug)]
@@ -154,7 +154,7 @@ impl Query {
         block: &Block,
         lanes: u32,
     ) {
-        for lane in (0..BLOCK).filter(|lane| lanes >> lane & 1 == 1) {
+        for lane in set_bits(lanes) {
             let vertices = block.vertices(lane);
             if let Some(hit) = self.shear.meet(ray.origin, &vertices) {
                 let hit = Hit {

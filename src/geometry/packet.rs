@@ -5,7 +5,7 @@ use super::block::Block;
 use super::leaf::Query;
 use super::triangle::Shear;
 use crate::bvh::{BLOCK, GROUPS, PACKET, PacketRays, PerRay, SlabRay, padded_four};
-use crate::math::{Lanes, Ray};
+use crate::math::{Lanes, Ray, set_bits};
 
 /// Rays in a group.
 pub(super) const LANES: usize = PACKET / GROUPS;
@@ -255,7 +255,7 @@ impl Packet {
         primitive: u32,
         [b1, b2]: [[f32; LANES]; 2],
     ) {
-        for lane in (0..LANES).filter(|lane| lanes >> lane & 1 == 1) {
+        for lane in set_bits(lanes) {
             let best = &mut self.primitive[group][lane];
             if primitive < best.to_bits() {
                 *best = f32::from_bits(primitive);

@@ -4,7 +4,7 @@ use super::block::Block;
 use super::leaf::{LeafOrder, Query};
 use super::packet::{Corners, LANES, Packet, Planes};
 use crate::bvh::{BLOCK, GROUPS, PacketLeaves, PacketRays, PerRay};
-use crate::math::{Lanes, Ray};
+use crate::math::{Lanes, Ray, set_bits};
 
 impl PacketLeaves for LeafOrder {
     type Packet = Packet;
@@ -35,10 +35,7 @@ impl PacketLeaves for LeafOrder {
                 break;
             }
             if block.has_spheres() {
-                let mut left = active;
-                while left != 0 {
-                    let i = left.trailing_zeros() as usize;
-                    left &= left - 1;
+                for i in set_bits(active) {
                     packet.alone(rays, i, |query, ray| query.spheres(self, ray, block));
                 }
             }
@@ -117,7 +114,7 @@ impl Packet {
         (triangle, group): (usize, usize),
         lanes: u32,
     ) {
-        for lane in (0..LANES).filter(|lane| lanes >> lane & 1 == 1) {
+        for lane in set_bits(lanes) {
             self.alone(rays, LANES * group + lane, |query, ray| {
                 query.triangles_on_edges(ray, block, 1 << triangle);
             });

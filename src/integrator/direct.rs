@@ -129,10 +129,12 @@ pub(super) enum DirectRay {
     Gather { ray: Ray, factor: Rgb },
 }
 
-/// What chooses inside a light and the place there, for light sample `number` at a vertex.
-pub(super) fn light_numbers(sampler: PathSampler, bounce: u32, number: u32) -> (f32, Vec2) {
+/// What chooses a light, and what chooses inside it and the place there, for light sample `number` at
+/// a vertex.
+pub(super) fn light_numbers(sampler: PathSampler, bounce: u32, number: u32) -> (f32, (f32, Vec2)) {
     let choice = sampler.get_2d(bounce, Slot::LightChoice(number));
-    (choice.y, sampler.get_2d(bounce, Slot::LightPoint(number)))
+    let place = sampler.get_2d(bounce, Slot::LightPoint(number));
+    (choice.x, (choice.y, place))
 }
 
 impl PathTracer<'_> {
@@ -185,7 +187,7 @@ impl PathTracer<'_> {
         number: u32,
     ) -> Option<(LightSample, f32)> {
         let shapes = self.scene.shapes();
-        let numbers = light_numbers(sampler, bounce, number);
+        let (u, numbers) = light_numbers(sampler, bounce, number);
         match self.plan.samples[number as usize] {
             DirectSample::Hemisphere { .. } => None,
             DirectSample::Light { light, weight } => {
@@ -193,7 +195,6 @@ impl PathTracer<'_> {
                 Some((light.sample(shapes, from, numbers.0, numbers.1)?, weight))
             }
             DirectSample::AnyLight { weight } => {
-                let u = sampler.get_1d(bounce, Slot::LightChoice(number));
                 let choice = self
                     .scene
                     .light_sampler()

@@ -153,7 +153,7 @@ impl AreaLight {
         let intensity = part.area() * luminance(self.radiance);
         let normal = part.normal()?;
         match part {
-            Part::Triangle(corners, _) => {
+            Part::Triangle { corners, .. } => {
                 EmissionBounds::flat(corners, normal, intensity, self.two_sided)
             }
             Part::Parallelogram(whole) => {

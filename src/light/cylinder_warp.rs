@@ -17,28 +17,56 @@ pub(crate) const LEVEL: f32 = 0.013;
 /// Area-Preserving Parametrization for Spherical Rectangles", invert the product exactly; here the
 /// length of the rows enters by the bilinear factor.) The angle is replaced by the tangent of a quarter
 /// of it, which needs roots only and is uneven by at most a factor of two.
-pub(super) struct CylinderWarp {
+pub(super) struct CylinderWarp<'a> {
     from: Vec3,
-    /// Unit, along one of the edges; sines are measured along it.
-    axis: Vec3,
-    /// Unit, in the plane, at a right angle to the axis, from the first row to the last.
-    across: Vec3,
+    frame: &'a EdgeFrame,
     /// From the axis to the plane, unit times distance.
     height: f32,
     down: Vec3,
-    /// First row and distance to the last, along `across`.
+    /// First row, along `across`.
     near_row: f32,
-    width: f32,
-    /// Start of the first row along the axis, its length, and how far rows move along it per unit of
-    /// `across`.
+    /// Start of the first row along the axis.
     start: f32,
-    length: f32,
-    shear: f32,
     /// The middle of the angle that the rows fill, as a unit vector over (`across`, `down`).
     middle: Vec2,
     /// Tangent of a quarter of that angle.
     quarter: f32,
     density: Bilinear,
+}
+
+/// A parallelogram as it lies to an axis along one of its edges.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct EdgeFrame {
+    /// Unit, along the edge; sines are measured along it.
+    pub(super) axis: Vec3,
+    /// Unit, in the plane, at a right angle to the axis, from the first row to the last.
+    pub(super) across: Vec3,
+    /// Of the edge and of all rows.
+    pub(super) length: f32,
+    /// From the first row to the last, along `across`.
+    pub(super) width: f32,
+    /// How far rows move along the axis per unit of `across`.
+    pub(super) shear: f32,
+}
+
+impl EdgeFrame {
+    /// The axes along the first and along the second edge.
+    pub(super) fn both(edge_1: Vec3, edge_2: Vec3, normal: Vec3) -> [Self; 2] {
+        let frame = |along: Vec3, other: Vec3, turn: f32| {
+            let length = along.length();
+            let axis = along / length;
+            let across = turn * normal.cross(axis);
+            let width = other.dot(across);
+            Self {
+                axis,
+                across,
+                length,
+                width,
+                shear: other.dot(axis) / width,
+            }
+        };
+        [frame(edge_1, edge_2, 1.0), frame(edge_2, edge_1, -1.0)]
+    }
 }
 
 /// The part of the light at one distance from the axis.
@@ -52,20 +80,20 @@ struct Row {
     sines: f32,
 }
 
-impl CylinderWarp {
+impl<'a> CylinderWarp<'a> {
     /// `None` in the plane of the light and where the light lies wholly below the horizon of `from`.
-    pub(super) fn new(light: &Parallelogram, from: &LightSampleContext) -> Option<Self> {
-        let (along, other, turn) = if is_beyond_ends(light, from.point) {
-            (light.edge_2, light.edge_1, -1.0)
-        } else {
-            (light.edge_1, light.edge_2, 1.0)
-        };
-        let length = along.length();
-        let axis = along / length;
-        let across = turn * light.normal.cross(axis);
+    pub(super) fn new(light: &'a Parallelogram, from: &LightSampleContext) -> Option<Self> {
+        let along = usize::from(is_beyond_ends(light, from.point));
+        let frame = &light.frames[along];
+        let EdgeFrame {
+            axis,
+            across,
+            width,
+            ..
+        } = *frame;
         let to_corner = light.corner - from.point;
         let height = light.normal.dot(to_corner);
-        let (near_row, width) = (to_corner.dot(across), other.dot(across));
+        let near_row = to_corner.dot(across);
         let far_row = near_row + width;
         let unit = |x: f32| Vec2::new(x, height.abs()).normalize_or_zero();
         let sum = unit(near_row) + unit(far_row);
@@ -78,22 +106,17 @@ impl CylinderWarp {
         };
         let mut warp = Self {
             from: from.point,
-            axis,
-            across,
+            frame,
             height: height.abs(),
             down: light.normal * height.signum(),
             near_row,
-            width,
             start: to_corner.dot(axis),
-            length,
-            shear: other.dot(axis) / width,
             middle: sum.try_normalize()?,
             quarter: sin / (1.0 + cos),
             density: Bilinear::new([1.0; 4])?,
         };
         let sines = [warp.row(near_row).sines, warp.row(far_row).sines];
-        let next = light.corner + along;
-        let corners = [light.corner, next, light.corner + other, next + other];
+        let corners = light.corners_along(along);
         let weight = |i: usize| {
             let segment = corners[i] - from.point;
             let distance = segment.length();
@@ -113,24 +136,25 @@ impl CylinderWarp {
         let downwards = self.middle.y * cos - self.middle.x * sin;
         // At the ends rounding may leave the light or even point upwards.
         let x = (self.height * sideways / downwards.max(f32::MIN_POSITIVE))
-            .clamp(self.near_row, self.near_row + self.width);
+            .clamp(self.near_row, self.near_row + self.frame.width);
         let row = self.row(x);
         let y = row.at(place.x);
-        let point = self.from + x * self.across + y * self.axis + self.height * self.down;
+        let point =
+            self.from + x * self.frame.across + y * self.frame.axis + self.height * self.down;
         (point, self.density_at(place, tangent, &row))
     }
 
     /// Density per steradian at a point of the light.
     pub(super) fn pdf(&self, point: Vec3) -> f32 {
         let segment = point - self.from;
-        let x = segment.dot(self.across);
+        let x = segment.dot(self.frame.across);
         let toward = Vec2::new(x, self.height).normalize_or_zero();
         let cos = toward.dot(self.middle);
         let sin = toward.x * self.middle.y - toward.y * self.middle.x;
         let most = self.quarter;
         let tangent = (sin / (1.0 + cos)).clamp(-most, most);
-        let row = self.row(x.clamp(self.near_row, self.near_row + self.width));
-        let along = row.place_of(segment.dot(self.axis));
+        let row = self.row(x.clamp(self.near_row, self.near_row + self.frame.width));
+        let along = row.place_of(segment.dot(self.frame.axis));
         let place = Vec2::new(along, 0.5 + 0.5 * tangent / most);
         self.density_at(place, tangent, &row)
     }
@@ -143,14 +167,14 @@ impl CylinderWarp {
 
     /// The row at `x` along `across`.
     fn row(&self, x: f32) -> Row {
-        let first = self.start + (x - self.near_row) * self.shear;
-        let ends = [first, first + self.length];
+        let first = self.start + (x - self.near_row) * self.frame.shear;
+        let ends = [first, first + self.frame.length];
         let radius2 = x * x + self.height * self.height;
         let distances = ends.map(|y| (radius2 + y * y).sqrt());
         let product = distances[0] * distances[1];
         let outer = ends[1] * distances[0] + -ends[0] * distances[1];
         // On one side of the point the sines cancel; a² − b² over a + b does not.
-        let inner = radius2 * self.length * (ends[0] + ends[1])
+        let inner = radius2 * self.frame.length * (ends[0] + ends[1])
             / (ends[1] * distances[0] + ends[0] * distances[1]);
         let is_aside = ends[0] * ends[1] > 0.0;
         Row {
@@ -168,7 +192,8 @@ impl CylinderWarp {
 fn is_beyond_ends(light: &Parallelogram, from: Vec3) -> bool {
     let place = light.place_of(from);
     let beyond = (place - place.clamp(Vec2::ZERO, Vec2::ONE)).abs();
-    (beyond.x - LEVEL) * light.edge_1.length() > beyond.y * light.edge_2.length()
+    let [first, second] = &light.frames;
+    (beyond.x - LEVEL) * first.length > beyond.y * second.length
 }
 
 impl Row {

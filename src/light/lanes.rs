@@ -1,6 +1,5 @@
 use glam::Vec3;
 
-use super::near_lanes::NearParallelogram;
 use super::parallelogram::Parallelogram;
 use super::{AreaLight, Light};
 use crate::math::{Lanes, Vec3Lanes};
@@ -33,7 +32,6 @@ pub struct LightSampleLanes<L: Lanes> {
 pub struct ParallelogramLight<'a> {
     light: &'a AreaLight,
     shape: &'a Parallelogram,
-    near: NearParallelogram,
 }
 
 impl Light {
@@ -42,11 +40,7 @@ impl Light {
         match self {
             Self::Area(light) => {
                 let shape = light.only_parallelogram()?;
-                Some(ParallelogramLight {
-                    light,
-                    shape,
-                    near: NearParallelogram::new(shape),
-                })
+                Some(ParallelogramLight { light, shape })
             }
             _ => None,
         }
@@ -72,12 +66,12 @@ impl ParallelogramLight<'_> {
         let near = L::bits(is_near);
         let all_near = near == L::ALL;
         let (mut point, mut pdf, mut is_there) = if all_near {
-            self.near.sample(shape, from, u)
+            shape.sample_near(from, u)
         } else {
             sample_far(shape, from, u)
         };
         if near != 0 && !all_near {
-            let (near_point, near_pdf, near_there) = self.near.sample(shape, from, u);
+            let (near_point, near_pdf, near_there) = shape.sample_near(from, u);
             point = Vec3Lanes::select(is_near, near_point, point);
             pdf = L::select(is_near, near_pdf, pdf);
             is_there = (near_there & is_near) | L::without(is_there, is_near);

@@ -1,5 +1,3 @@
-use std::collections::HashMap;
-
 use glam::Vec3;
 
 use super::parallelogram::Parallelogram;
@@ -10,40 +8,61 @@ const ROUNDING: f32 = 4.0 * f32::EPSILON;
 /// … and this share of the shorter edge, so that the light's shape and area stay what they are.
 const SHAPE: f32 = 1e-4;
 
-/// For each triangle the place of its partner and what they make together, or nothing.
+/// What becomes of a triangle.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Partner {
+    /// It stays alone.
+    None,
+    /// It makes this together with a later one.
+    Later(Parallelogram),
+    /// It is part of what the triangle at this place makes.
+    Earlier(usize),
+}
+
+/// For each triangle its partner.
 ///
 /// A triangle that could go with several goes with the one that makes the parallelogram nearest to a
 /// rectangle, of equal ones with the first. Corners are the same when their coordinates are.
-pub(super) fn parallelograms(triangles: &[[Vec3; 3]]) -> Vec<Option<(usize, Parallelogram)>> {
-    let mut by_edge: HashMap<[[u32; 3]; 2], Vec<usize>> = HashMap::new();
-    for (index, corners) in triangles.iter().enumerate() {
-        for side in 0..3 {
-            by_edge.entry(edge(corners, side)).or_default().push(index);
-        }
-    }
-    let mut partners = vec![None; triangles.len()];
+pub(super) fn parallelograms(triangles: &[[Vec3; 3]]) -> Vec<Partner> {
+    let by_edge = by_edge(triangles);
+    let mut partners = vec![Partner::None; triangles.len()];
     for index in 0..triangles.len() {
-        if partners[index].is_some() {
+        if !matches!(partners[index], Partner::None) {
             continue;
         }
         let best = (0..3)
             .flat_map(|side| {
                 let [from, to] = edge(&triangles[index], side);
-                let others = by_edge.get(&[to, from]).map_or(&[][..], Vec::as_slice);
-                others.iter().map(move |&other| (side, other))
+                let reverse = [to, from];
+                let first = by_edge.partition_point(|entry| entry.0 < reverse);
+                let others = by_edge[first..].iter();
+                let others = others.take_while(move |entry| entry.0 == reverse);
+                others.map(move |entry| (side, entry.1))
             })
-            .filter(|&(_, other)| other > index && partners[other].is_none())
+            .filter(|&(_, other)| other > index && matches!(partners[other], Partner::None))
             .filter_map(|(side, other)| {
                 let whole = joined(&triangles[index], side, &triangles[other])?;
                 Some((slant(&whole), other, whole))
             })
             .min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         if let Some((_, other, whole)) = best {
-            partners[index] = Some((other, whole));
-            partners[other] = Some((index, whole));
+            partners[index] = Partner::Later(whole);
+            partners[other] = Partner::Earlier(index);
         }
     }
     partners
+}
+
+/// Every side with its triangle, in order. Sides without length are left out: what they join has no
+/// area.
+fn by_edge(triangles: &[[Vec3; 3]]) -> Vec<([[u32; 3]; 2], usize)> {
+    let sides = triangles.iter().enumerate().flat_map(|(index, corners)| {
+        let sides = (0..3).map(move |side| (edge(corners, side), index));
+        sides.filter(|([from, to], _)| from != to)
+    });
+    let mut sides: Vec<_> = sides.collect();
+    sides.sort_unstable();
+    sides
 }
 
 /// |cos| of the angle between the edges: 0 for rectangles.

@@ -1,4 +1,4 @@
-use glam::{Vec2, Vec3};
+use glam::Vec2;
 
 use super::cylinder_warp::LEVEL;
 use super::parallelogram::Parallelogram;
@@ -6,27 +6,7 @@ use super::{ContextLanes, lanes::place_of};
 use crate::math::{Lanes, Vec3Lanes};
 use crate::sampling::BilinearLanes;
 
-/// What [`super::cylinder_warp::CylinderWarp`] needs of a parallelogram, with its axis along the first
-/// and along the second edge.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct NearParallelogram {
-    frames: [EdgeFrame; 2],
-    /// The lengths of the edges.
-    lengths: [f32; 2],
-}
-
-/// The axis along one edge.
-#[derive(Clone, Copy, Debug)]
-struct EdgeFrame {
-    axis: Vec3,
-    across: Vec3,
-    length: f32,
-    width: f32,
-    shear: f32,
-    corners: [Vec3; 4],
-}
-
-/// One of them for each lane.
+/// An [`super::cylinder_warp::EdgeFrame`] for each lane, seen from a point.
 struct EdgeFrameLanes<L> {
     axis: Vec3Lanes<L>,
     across: Vec3Lanes<L>,
@@ -48,56 +28,32 @@ struct Row<L> {
     sines: L,
 }
 
-impl NearParallelogram {
-    pub(super) fn new(shape: &Parallelogram) -> Self {
-        let frame = |along: Vec3, other: Vec3, turn: f32| {
-            let length = along.length();
-            let axis = along / length;
-            let across = turn * shape.normal.cross(axis);
-            let width = other.dot(across);
-            let next = shape.corner + along;
-            EdgeFrame {
-                axis,
-                across,
-                length,
-                width,
-                shear: other.dot(axis) / width,
-                corners: [shape.corner, next, shape.corner + other, next + other],
-            }
-        };
-        let (first, second) = (shape.edge_1, shape.edge_2);
-        Self {
-            frames: [frame(first, second, 1.0), frame(second, first, -1.0)],
-            lengths: [first.length(), second.length()],
-        }
-    }
-
+impl Parallelogram {
     /// Points and densities as [`super::cylinder_warp::CylinderWarp::sample`] gives them, the same bits,
     /// and where there are any.
     #[inline(always)]
-    pub(super) fn sample<L: Lanes>(
+    pub(super) fn sample_near<L: Lanes>(
         &self,
-        shape: &Parallelogram,
         from: &ContextLanes<L>,
         u: [L; 2],
     ) -> (Vec3Lanes<L>, L, L::Mask) {
         let (zero, one) = (L::splat(0.0), L::splat(1.0));
-        let [px, py] = place_of(shape, from.point);
+        let [px, py] = place_of(self, from.point);
         let beyond_x = (px - px.max(zero).min(one)).abs();
         let beyond_y = (py - py.max(zero).min(one)).abs();
-        let is_second = ((beyond_x - L::splat(LEVEL)) * L::splat(self.lengths[0]))
-            .gt(beyond_y * L::splat(self.lengths[1]));
-        let to_corner = Vec3Lanes::splat(shape.corner) - from.point;
-        let signed_height = Vec3Lanes::splat(shape.normal).dot(to_corner);
-        let frame = self.frame(is_second, to_corner, signed_height.abs());
+        let is_second = ((beyond_x - L::splat(LEVEL)) * L::splat(self.frames[0].length))
+            .gt(beyond_y * L::splat(self.frames[1].length));
+        let to_corner = Vec3Lanes::splat(self.corner) - from.point;
+        let signed_height = Vec3Lanes::splat(self.normal).dot(to_corner);
+        let frame = self.frame_lanes(is_second, to_corner, signed_height.abs());
         let (middle, quarter, has_middle) = frame.fan();
         let near = frame.row(frame.near_row).sines;
         let far = frame.row(frame.near_row + frame.width).sines;
         let (density, is_usable) = BilinearLanes::new([
-            self.weight(is_second, 0, from, near),
-            self.weight(is_second, 1, from, near),
-            self.weight(is_second, 2, from, far),
-            self.weight(is_second, 3, from, far),
+            self.near_weight(is_second, 0, from, near),
+            self.near_weight(is_second, 1, from, near),
+            self.near_weight(is_second, 2, from, far),
+            self.near_weight(is_second, 3, from, far),
         ]);
         let place = density.sample(u);
         let tangent = quarter * (L::splat(2.0) * place[1] - one);
@@ -112,7 +68,7 @@ impl NearParallelogram {
         let x = (frame.near_row + frame.width).min(x);
         let row = frame.row(x);
         let y = row.at(place[0]);
-        let down = Vec3Lanes::splat(shape.normal).scale(one.copysign(signed_height));
+        let down = Vec3Lanes::splat(self.normal).scale(one.copysign(signed_height));
         let point =
             from.point + frame.across.scale(x) + frame.axis.scale(y) + down.scale(frame.height);
         let pdf =
@@ -122,7 +78,7 @@ impl NearParallelogram {
 
     /// What a corner sends, in a row of the given difference of sines.
     #[inline(always)]
-    fn weight<L: Lanes>(
+    fn near_weight<L: Lanes>(
         &self,
         is_second: L::Mask,
         corner: usize,
@@ -131,15 +87,15 @@ impl NearParallelogram {
     ) -> L {
         let corner = Vec3Lanes::select(
             is_second,
-            Vec3Lanes::splat(self.frames[1].corners[corner]),
-            Vec3Lanes::splat(self.frames[0].corners[corner]),
+            Vec3Lanes::splat(self.corners_along(1)[corner]),
+            Vec3Lanes::splat(self.corners_along(0)[corner]),
         );
         let segment = corner - from.point;
         sines * from.normal.dot(segment).max(L::splat(0.0)) / segment.length()
     }
 
     #[inline(always)]
-    fn frame<L: Lanes>(
+    fn frame_lanes<L: Lanes>(
         &self,
         is_second: L::Mask,
         to_corner: Vec3Lanes<L>,

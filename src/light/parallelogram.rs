@@ -2,7 +2,7 @@ use glam::{Vec2, Vec3};
 
 use super::LightSampleContext;
 use super::corner_warp::CornerWarp;
-use super::cylinder_warp::CylinderWarp;
+use super::cylinder_warp::{CylinderWarp, EdgeFrame};
 
 /// Points nearer than this multiple of the longer edge are near: the density of [`CornerWarp`] no longer
 /// follows the light there, that of [`CylinderWarp`] does. Not a round number: whole surfaces would lie at
@@ -27,6 +27,8 @@ pub(super) struct Parallelogram {
     dual_2: Vec3,
     /// Square of the distance below which points are near.
     pub(super) near2: f32,
+    /// As it lies to axes along its edges.
+    pub(super) frames: [EdgeFrame; 2],
 }
 
 impl Parallelogram {
@@ -45,6 +47,7 @@ impl Parallelogram {
             dual_1: edge_2.cross(normal) / area,
             dual_2: normal.cross(edge_1) / area,
             near2: NEAR * NEAR * longer2,
+            frames: EdgeFrame::both(edge_1, edge_2, normal),
         })
     }
 
@@ -55,13 +58,20 @@ impl Parallelogram {
 
     /// The corners at (0, 0), (1, 0), (0, 1), (1, 1) of the unit square.
     pub(super) fn corners(&self) -> [Vec3; 4] {
-        let next = self.corner + self.edge_1;
-        [
-            self.corner,
-            next,
-            self.corner + self.edge_2,
-            next + self.edge_2,
-        ]
+        self.corners_along(0)
+    }
+
+    /// Start and end of the first row, then of the last, where rows run along the first (`edge` 0) or
+    /// the second edge (1).
+    #[inline]
+    pub(super) fn corners_along(&self, edge: usize) -> [Vec3; 4] {
+        let (along, other) = if edge == 0 {
+            (self.edge_1, self.edge_2)
+        } else {
+            (self.edge_2, self.edge_1)
+        };
+        let next = self.corner + along;
+        [self.corner, next, self.corner + other, next + other]
     }
 
     /// The point of the parallelogram that belongs to `place` in the unit square.

@@ -1,6 +1,6 @@
 use glam::{Vec2, Vec3};
 
-use super::merge::parallelograms;
+use super::merge::{Partner, parallelograms};
 use super::parallelogram::Parallelogram;
 use crate::geometry::Shapes;
 use crate::sampling::uniform_triangle;
@@ -24,21 +24,31 @@ pub enum AreaPart {
 /// A part as it is sampled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Part {
-    /// With its unit normal; nothing for a triangle without area.
-    Triangle([Vec3; 3], Option<Vec3>),
+    Triangle {
+        corners: [Vec3; 3],
+        /// Unit; nothing without area.
+        normal: Option<Vec3>,
+        /// Of one side.
+        area: f32,
+    },
     Parallelogram(Parallelogram),
 }
 
 impl Part {
     fn triangle(corners: [Vec3; 3]) -> Self {
         let [a, b, c] = corners;
-        Self::Triangle(corners, (b - a).cross(c - a).try_normalize())
+        let cross = (b - a).cross(c - a);
+        Self::Triangle {
+            corners,
+            normal: cross.try_normalize(),
+            area: 0.5 * cross.length(),
+        }
     }
 
     /// Of one side.
     pub(super) fn area(&self) -> f32 {
         match self {
-            Self::Triangle([a, b, c], _) => 0.5 * (b - a).cross(c - a).length(),
+            Self::Triangle { area, .. } => *area,
             Self::Parallelogram(whole) => whole.area,
         }
     }
@@ -46,7 +56,7 @@ impl Part {
     /// Unit; nothing for a triangle without area.
     pub(super) fn normal(&self) -> Option<Vec3> {
         match self {
-            Self::Triangle(_, normal) => *normal,
+            Self::Triangle { normal, .. } => *normal,
             Self::Parallelogram(whole) => Some(whole.normal),
         }
     }
@@ -54,7 +64,9 @@ impl Part {
     /// A point evenly spread over the area.
     pub(super) fn even_point(&self, u: Vec2) -> Vec3 {
         match self {
-            Self::Triangle([a, b, c], _) => {
+            Self::Triangle {
+                corners: [a, b, c], ..
+            } => {
                 let (b1, b2) = uniform_triangle(u);
                 a + b1 * (b - a) + b2 * (c - a)
             }
@@ -65,7 +77,7 @@ impl Part {
     /// What others see of it.
     pub(super) fn outline(&self) -> AreaPart {
         match *self {
-            Self::Triangle(corners, _) => AreaPart::Triangle(corners),
+            Self::Triangle { corners, .. } => AreaPart::Triangle(corners),
             Self::Parallelogram(whole) => AreaPart::Parallelogram {
                 corner: whole.corner,
                 edge_1: whole.edge_1,
@@ -84,12 +96,13 @@ pub(super) fn parts_of(shapes: &Shapes, primitives: &[u32]) -> (Vec<Part>, Vec<(
     let mut part_of: Vec<(u32, u32)> = Vec::with_capacity(primitives.len());
     for (index, &primitive) in primitives.iter().enumerate() {
         let part = match partners[index] {
-            Some((partner, _)) if partner < index => part_of[partner].1,
-            partner => {
-                parts.push(match partner {
-                    Some((_, whole)) => Part::Parallelogram(whole),
-                    None => Part::triangle(triangles[index]),
-                });
+            Partner::Earlier(partner) => part_of[partner].1,
+            Partner::Later(whole) => {
+                parts.push(Part::Parallelogram(whole));
+                parts.len() as u32 - 1
+            }
+            Partner::None => {
+                parts.push(Part::triangle(triangles[index]));
                 parts.len() as u32 - 1
             }
         };

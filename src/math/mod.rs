@@ -1,7 +1,8 @@
-//! Floor 0: what glam lacks. Rays, boxes, shading frames, robust ray origins, instruction sets,
+//! Floor 0: what glam lacks. Rays, boxes, shading frames, robust ray origins, instruction sets, sets of bits,
 //! lanes.
 
 mod aabb;
+mod bits;
 mod frame;
 mod isa;
 mod lanes;
@@ -10,6 +11,7 @@ mod offset;
 mod ray;
 
 pub use aabb::Aabb;
+pub use bits::set_bits;
 pub use frame::Frame;
 pub use isa::{Isa, IsaError};
 #[cfg(target_arch = "x86_64")]

@@ -4,6 +4,7 @@ use glam::Vec2;
 
 use super::digital_net::{index_in_pair, point};
 use super::scramble::{mix_32, mix_64, scramble, shuffle};
+use super::warp::LATTICE_CELL;
 
 pub use lanes::PathSamplerLanes;
 
@@ -131,9 +132,6 @@ impl PathSampler {
 /// What multiplies the number of the sample where points are independent.
 const INDEPENDENT: u32 = 0x85EB_CA77;
 
-/// The spacing 2⁻²⁴ of all numbers.
-const LATTICE: f32 = 1.0 / 16_777_216.0;
-
 /// A number for each slot of each bounce: 2²⁰ slots for each of 4096 bounces; no path is longer.
 fn dimension(bounce: u32, slot: Slot) -> u32 {
     (bounce.rotate_left(20) ^ slot.index()).wrapping_mul(0x9E37_79B1)
@@ -141,7 +139,7 @@ fn dimension(bounce: u32, slot: Slot) -> u32 {
 
 /// The first 24 binary digits, of which the first is the lowest bit.
 fn unit(digits: u32) -> f32 {
-    (digits.reverse_bits() >> 8) as f32 * LATTICE
+    (digits.reverse_bits() >> 8) as f32 * LATTICE_CELL
 }
 
 #[cfg(test)]

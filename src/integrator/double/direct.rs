@@ -23,7 +23,7 @@ pub(super) fn direct_light(tracer: &PathTracer<'_>, path: &Path, vertex: &Vertex
     let samples = tracer.plan.samples.iter().zip(0..);
     let sum = samples.map(|(sample, number)| match *sample {
         DirectSample::Light { light, weight } => {
-            let (u_part, u) = light_numbers(path.sampler, path.bounce, number);
+            let (_, (u_part, u)) = light_numbers(path.sampler, path.bounce, number);
             let light = scene.light(light);
             let sample = light::sample(light, scene.shapes(), from, u_part, u);
             lit_by(tracer, vertex, sample) * f64::from(weight)
@@ -47,10 +47,9 @@ fn any_light(
     number: u32,
 ) -> Option<light::LightSample> {
     let scene = tracer.scene;
-    let u = path.sampler.get_1d(path.bounce, Slot::LightChoice(number));
+    let (u, numbers) = light_numbers(path.sampler, path.bounce, number);
     let place = (vertex.surface.point, vertex.lit_normal());
     let (index, part, pmf) = light_choice::choose(scene.light_sampler(), place, u)?;
-    let numbers = light_numbers(path.sampler, path.bounce, number);
     let sample = light::sample_part(scene.light(index), scene.shapes(), part, place, numbers)?;
     Some(light::LightSample {
         pdf: pmf * sample.pdf,

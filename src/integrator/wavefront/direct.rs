@@ -5,7 +5,9 @@ use super::shade::{Group, Shade};
 use crate::light::{
     ContextLanes, LightSample, LightSampleContext, LightSampleLanes, ParallelogramLight,
 };
-use crate::math::{Lanes, ROW, SHADOW_T_MAX, Vec3Array, Vec3Lanes, gamma, offset_origin_lanes};
+use crate::math::{
+    Lanes, ROW, SHADOW_T_MAX, Vec3Array, Vec3Lanes, gamma, offset_origin_lanes, set_bits,
+};
 use crate::sampling::Slot;
 
 /// A light sample for each of eight vertices.
@@ -117,7 +119,7 @@ impl Shade<'_, '_> {
         (points, normals): (&Vec3Array, &Vec3Array),
         number: u32,
     ) {
-        for lane in (0..ROW).filter(|lane| lanes >> lane & 1 == 1) {
+        for lane in set_bits(lanes) {
             let id = self.paths.states[first + lane].id as usize;
             let from = LightSampleContext {
                 point: points.get(lane),
@@ -138,8 +140,8 @@ impl Shade<'_, '_> {
         let wi = Vec3Lanes::<L>::load(&samples.wi);
         let z = surface.shading_normal.dot(wi);
         let normal = surface.geometric_normal;
-        let is_same_side = (group.wo_z.gt(zero) & z.gt(zero)) | (group.wo_z.lt(zero) & z.lt(zero));
-        let bits = L::bits((z * wi.dot(normal)).gt(zero) & is_same_side) & samples.lanes;
+        let is_lit = (z * wi.dot(normal)).gt(zero) & group.is_same_side(z);
+        let bits = L::bits(is_lit) & samples.lanes;
         if bits == 0 {
             return 0;
         }
@@ -161,12 +163,12 @@ impl Shade<'_, '_> {
         let error = point.abs().scale(L::splat(gamma(8)));
         let target = offset_origin_lanes(point, error, Vec3Lanes::load(&samples.normal), -wi);
         let segment = target - origin;
-        let direction = Vec3Lanes::select(L::mask_of_bits(samples.infinite), wi, segment);
         let infinite = L::mask_of_bits(samples.infinite);
+        let direction = Vec3Lanes::select(infinite, wi, segment);
         let t_max = L::select(infinite, L::splat(f32::INFINITY), L::splat(SHADOW_T_MAX));
         let rays = rays(origin, direction, [zero, t_max]);
         let contribution = contribution.store();
-        for lane in (0..ROW).filter(|lane| bits >> lane & 1 == 1) {
+        for lane in set_bits(bits) {
             let owner = self.paths.states[group.first + lane].id;
             (self.direct).push_shadow(owner, rays[lane], contribution.get(lane));
         }

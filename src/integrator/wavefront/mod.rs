@@ -16,7 +16,7 @@ use super::path::{Path, Vertex};
 use super::{PathCounts, PathId, PathTracer};
 use crate::color::{Rgb, is_valid_radiance};
 use crate::geometry::Hit;
-use crate::math::run_lanes;
+use crate::math::{ROW, run_lanes};
 use crate::sampling::PathSampler;
 use paths::Paths;
 use queue::DirectQueues;
@@ -121,8 +121,8 @@ impl Wavefront {
     ) {
         self.next.clear();
         let part = (MOST_DIRECT / tracer.plan.len().max(1))
-            .max(8)
-            .next_multiple_of(8);
+            .max(ROW)
+            .next_multiple_of(ROW);
         for first in (0..self.paths.len()).step_by(part) {
             let shade = Shade {
                 tracer,

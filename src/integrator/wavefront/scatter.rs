@@ -5,7 +5,7 @@ use glam::Vec3;
 use super::super::path::{MIN_SURVIVAL, SURVIVAL_OF_THROUGHPUT, TRAPPED_AFTER, TRAPPED_SURVIVAL};
 use super::paths::{NONE, PathState};
 use super::shade::{Group, Shade};
-use crate::math::{Lanes, ROW, Ray, Vec3Lanes, offset_origin_lanes};
+use crate::math::{Lanes, ROW, Ray, Vec3Lanes, offset_origin_lanes, set_bits};
 use crate::sampling::{Slot, cosine_hemisphere_lanes};
 
 impl Shade<'_, '_> {
@@ -20,12 +20,11 @@ impl Shade<'_, '_> {
         let zero = L::splat(0.0);
         let size = local.z;
         local.z = L::select(group.wo_z.lt(zero), local.z.neg(), local.z);
-        let is_same_side =
-            (group.wo_z.gt(zero) & local.z.gt(zero)) | (group.wo_z.lt(zero) & local.z.lt(zero));
         let pdf = size * L::splat(FRAC_1_PI);
         let direction = (group.frame.to_world(local)).normalize_or(Vec3Lanes::splat(Vec3::ZERO));
         let normal = group.surface.geometric_normal;
-        let mut alive = is_same_side & pdf.gt(zero) & (direction.dot(normal) * local.z).gt(zero);
+        let mut alive =
+            group.is_same_side(local.z) & pdf.gt(zero) & (direction.dot(normal) * local.z).gt(zero);
         let weight = (group.surface.reflectance.scale(L::splat(FRAC_1_PI))).scale(size / pdf);
         let mut throughput = group.throughput * weight;
         alive = alive & throughput.max_element().gt(zero);
@@ -83,7 +82,7 @@ impl Shade<'_, '_> {
         let rays = rays(origin, direction, ends);
         let (throughput, pdf) = (throughput.store(), pdf.to_array());
         let (from, side) = (from.store(), side.store());
-        for lane in (0..L::N).filter(|lane| lanes >> lane & 1 == 1) {
+        for lane in set_bits(lanes) {
             self.next.rays.push(rays[lane]);
             self.next.states.push(PathState {
                 throughput: throughput.get(lane),

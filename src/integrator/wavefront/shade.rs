@@ -6,7 +6,7 @@ use super::surface::{Found, SurfaceArrays, SurfaceLanes};
 use super::{Path, PathCounts, PathTracer, Vertex};
 use crate::color::Rgb;
 use crate::geometry::Hit;
-use crate::math::{Frame, FrameLanes, LaneKernel, Lanes, ROW, Vec3Array, Vec3Lanes};
+use crate::math::{Frame, FrameLanes, LaneKernel, Lanes, Vec3Array, Vec3Lanes, set_bits};
 use crate::sampling::{PathSampler, PathSamplerLanes};
 
 /// One bounce of a range of paths: emission is added to their radiance, rays of direct light to the
@@ -44,6 +44,14 @@ impl<L: Lanes> Group<L> {
     pub(super) fn lit_normal(&self) -> Vec3Lanes<L> {
         let normal = self.surface.shading_normal;
         Vec3Lanes::select(self.wo_z.lt(L::splat(0.0)), -normal, normal)
+    }
+
+    /// Where directions with the cosines `z` to the shading normals lie strictly on the side from which
+    /// the paths came.
+    #[inline(always)]
+    pub(super) fn is_same_side(&self, z: L) -> L::Mask {
+        let zero = L::splat(0.0);
+        (self.wo_z.gt(zero) & z.gt(zero)) | (self.wo_z.lt(zero) & z.lt(zero))
     }
 }
 
@@ -143,7 +151,7 @@ impl<'s> Shade<'_, 's> {
         lanes: u32,
         surfaces: &SurfaceArrays,
     ) {
-        for lane in (0..ROW).filter(|lane| lanes >> lane & 1 == 1) {
+        for lane in set_bits(lanes) {
             let index = first + lane;
             let path = self.path(index);
             let primitive = self.hits[index].primitive;

@@ -1,7 +1,7 @@
 use glam::Vec3;
 
 use crate::geometry::{Hit, is_clear_of_edges, triangle_departure};
-use crate::math::{DoubleLanes, Lanes, ROW, Ray, Vec3Array, Vec3Lanes, gamma};
+use crate::math::{DoubleLanes, Lanes, ROW, Ray, Vec3Array, Vec3Lanes, gamma, set_bits};
 use crate::scene::{PlainShape, PlainSurfaces, SurfaceInteraction};
 
 /// Up to eight plain surface points, each with the bits of [`crate::scene::PreparedScene::interaction`].
@@ -162,7 +162,7 @@ impl Found {
     #[inline(never)]
     fn depart(&self, lanes: u32, points: &Vec3Array, errors: &Vec3Array) -> (Vec3Array, Vec3Array) {
         let (mut departures, mut bounds) = (*points, *errors);
-        for lane in (0..ROW).filter(|lane| lanes >> lane & 1 == 1) {
+        for lane in set_bits(lanes) {
             let vertices = self.vertices.map(|vertex| vertex.get(lane));
             let [b1, b2] = self.weights.map(|weights| weights[lane]);
             let at = (points.get(lane), errors.get(lane));

@@ -11,10 +11,10 @@ use std::arch::x86_64::{
     _mm256_shuffle_ps, _mm256_sqrt_ps, _mm256_storeu_ps, _mm256_sub_ps, _mm256_unpackhi_ps,
     _mm256_unpacklo_ps,
 };
-use std::ops::{Add, BitAnd, BitOr, Div, Mul, Sub};
 
 use super::avx2_doubles::Avx2Doubles;
 use super::avx2_ints::Avx2Ints;
+use super::registers::{float_methods, register_operators};
 use super::{IntLanes, LANES, LaneKernel, Lanes, ROW};
 use crate::math::{Isa, Ray};
 
@@ -41,28 +41,14 @@ pub(super) fn run<K: LaneKernel>(kernel: K) -> K::Answer {
     unsafe { compiled(kernel) }
 }
 
-macro_rules! operators {
-    ($type:ty: $($trait:ident $name:ident $intrinsic:ident;)*) => {
-        $(impl $trait for $type {
-            type Output = Self;
-
-            #[inline(always)]
-            fn $name(self, other: Self) -> Self {
-                // SAFETY: AVX2 is there (see `Avx2Lanes`).
-                Self(unsafe { $intrinsic(self.0, other.0) })
-            }
-        })*
-    };
-}
-
-operators! {
+register_operators! {
     Avx2Lanes:
     Add add _mm256_add_ps;
     Sub sub _mm256_sub_ps;
     Mul mul _mm256_mul_ps;
     Div div _mm256_div_ps;
 }
-operators! { Avx2Mask: BitAnd bitand _mm256_and_ps; BitOr bitor _mm256_or_ps; }
+register_operators! { Avx2Mask: BitAnd bitand _mm256_and_ps; BitOr bitor _mm256_or_ps; }
 
 impl Lanes for Avx2Lanes {
     type Mask = Avx2Mask;
@@ -71,16 +57,16 @@ impl Lanes for Avx2Lanes {
 
     const N: usize = LANES;
 
-    #[inline(always)]
-    fn load_row(from: &[f32; ROW]) -> Self {
-        // SAFETY: AVX2 is there (see `Avx2Lanes`); a row has at least eight numbers.
-        Self(unsafe { _mm256_loadu_ps(from.as_ptr()) })
-    }
-
-    #[inline(always)]
-    fn store_row(self, to: &mut [f32; ROW]) {
-        // SAFETY: AVX2 is there (see `Avx2Lanes`); a row has room for eight numbers.
-        unsafe { _mm256_storeu_ps(to.as_mut_ptr(), self.0) }
+    float_methods! {
+        ints: Avx2Ints,
+        load: _mm256_loadu_ps,
+        store: _mm256_storeu_ps,
+        min: _mm256_min_ps,
+        max: _mm256_max_ps,
+        sqrt: _mm256_sqrt_ps,
+        to_ints: _mm256_castps_si256,
+        from_ints: _mm256_castsi256_ps,
+        of_ints: _mm256_cvtepi32_ps,
     }
 
     #[inline(always)]
@@ -99,18 +85,6 @@ impl Lanes for Avx2Lanes {
     fn store(self, to: &mut [f32; LANES]) {
         // SAFETY: AVX2 is there (see `Avx2Lanes`); there is room for eight numbers.
         unsafe { _mm256_storeu_ps(to.as_mut_ptr(), self.0) }
-    }
-
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        // SAFETY: AVX2 is there (see `Avx2Lanes`).
-        Self(unsafe { _mm256_min_ps(self.0, other.0) })
-    }
-
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        // SAFETY: AVX2 is there (see `Avx2Lanes`).
-        Self(unsafe { _mm256_max_ps(self.0, other.0) })
     }
 
     #[inline(always)]
@@ -150,38 +124,9 @@ impl Lanes for Avx2Lanes {
     }
 
     #[inline(always)]
-    fn sqrt(self) -> Self {
-        // SAFETY: AVX2 is there (see `Avx2Lanes`).
-        Self(unsafe { _mm256_sqrt_ps(self.0) })
-    }
-
-    #[inline(always)]
-    fn to_ints(self) -> Avx2Ints {
-        // SAFETY: AVX2 is there (see `Avx2Lanes`).
-        Avx2Ints(unsafe { _mm256_castps_si256(self.0) })
-    }
-
-    #[inline(always)]
-    fn from_ints(ints: Avx2Ints) -> Self {
-        // SAFETY: AVX2 is there (see `Avx2Lanes`).
-        Self(unsafe { _mm256_castsi256_ps(ints.0) })
-    }
-
-    #[inline(always)]
-    fn of_ints(ints: Avx2Ints) -> Self {
-        // SAFETY: AVX2 is there (see `Avx2Lanes`).
-        Self(unsafe { _mm256_cvtepi32_ps(ints.0) })
-    }
-
-    #[inline(always)]
     fn ints_eq(a: Avx2Ints, b: Avx2Ints) -> Avx2Mask {
         // SAFETY: AVX2 is there (see `Avx2Lanes`).
         Avx2Mask(unsafe { _mm256_castsi256_ps(_mm256_cmpeq_epi32(a.0, b.0)) })
-    }
-
-    #[inline(always)]
-    fn select_ints(mask: Avx2Mask, yes: Avx2Ints, no: Avx2Ints) -> Avx2Ints {
-        Self::select(mask, Self::from_ints(yes), Self::from_ints(no)).to_ints()
     }
 
     #[inline(always)]

@@ -6,8 +6,8 @@ use std::arch::x86_64::{
     _mm256_extractf128_ps, _mm256_mul_pd, _mm256_set_m128, _mm256_set1_pd, _mm256_setzero_pd,
     _mm256_sqrt_pd, _mm256_sub_pd,
 };
-use std::ops::{Add, Div, Mul, Sub};
 
+use super::registers::pair_operators;
 use super::{Avx2Lanes, DoubleLanes};
 
 /// Eight numbers of double precision in two registers. Used only by kernels that
@@ -15,21 +15,8 @@ use super::{Avx2Lanes, DoubleLanes};
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Avx2Doubles(__m256d, __m256d);
 
-macro_rules! operators {
-    ($($trait:ident $name:ident $intrinsic:ident;)*) => {
-        $(impl $trait for Avx2Doubles {
-            type Output = Self;
-
-            #[inline(always)]
-            fn $name(self, other: Self) -> Self {
-                // SAFETY: AVX2 is there (see `Avx2Doubles`).
-                unsafe { Self($intrinsic(self.0, other.0), $intrinsic(self.1, other.1)) }
-            }
-        })*
-    };
-}
-
-operators! {
+pair_operators! {
+    Avx2Doubles:
     Add add _mm256_add_pd;
     Sub sub _mm256_sub_pd;
     Mul mul _mm256_mul_pd;

@@ -11,11 +11,12 @@ use std::arch::x86_64::{
     _mm512_mask_blend_ps, _mm512_max_ps, _mm512_min_ps, _mm512_mul_ps, _mm512_set1_ps,
     _mm512_sqrt_ps, _mm512_storeu_ps, _mm512_sub_ps, _mm512_zextps256_ps512,
 };
-use std::ops::{Add, BitAnd, BitOr, Div, Mul, Sub};
+use std::ops::{BitAnd, BitOr};
 
 use super::avx2::{Avx2Lanes, load_ray, store_ray, transpose};
 use super::avx512_doubles::Avx512Doubles;
 use super::avx512_ints::Avx512Ints;
+use super::registers::{float_methods, register_operators};
 use super::{LANES, LaneKernel, Lanes, ROW};
 use crate::math::{Isa, Ray};
 
@@ -44,21 +45,8 @@ pub(super) fn run<K: LaneKernel>(kernel: K) -> K::Answer {
     unsafe { compiled(kernel) }
 }
 
-macro_rules! operators {
-    ($($trait:ident $name:ident $intrinsic:ident;)*) => {
-        $(impl $trait for Avx512Lanes {
-            type Output = Self;
-
-            #[inline(always)]
-            fn $name(self, other: Self) -> Self {
-                // SAFETY: AVX-512 is there (see `Avx512Lanes`).
-                Self(unsafe { $intrinsic(self.0, other.0) })
-            }
-        })*
-    };
-}
-
-operators! {
+register_operators! {
+    Avx512Lanes:
     Add add _mm512_add_ps;
     Sub sub _mm512_sub_ps;
     Mul mul _mm512_mul_ps;
@@ -138,6 +126,18 @@ impl Lanes for Avx512Lanes {
 
     const N: usize = ROW;
 
+    float_methods! {
+        ints: Avx512Ints,
+        load: _mm512_loadu_ps,
+        store: _mm512_storeu_ps,
+        min: _mm512_min_ps,
+        max: _mm512_max_ps,
+        sqrt: _mm512_sqrt_ps,
+        to_ints: _mm512_castps_si512,
+        from_ints: _mm512_castsi512_ps,
+        of_ints: _mm512_cvtepi32_ps,
+    }
+
     #[inline(always)]
     fn splat(value: f32) -> Self {
         // SAFETY: AVX-512 is there (see `Avx512Lanes`).
@@ -154,30 +154,6 @@ impl Lanes for Avx512Lanes {
     fn store(self, to: &mut [f32; LANES]) {
         // SAFETY: AVX-512 is there (see `Avx512Lanes`); there is room for eight numbers.
         unsafe { _mm256_storeu_ps(to.as_mut_ptr(), low(self).0) }
-    }
-
-    #[inline(always)]
-    fn load_row(from: &[f32; ROW]) -> Self {
-        // SAFETY: AVX-512 is there (see `Avx512Lanes`); a row has sixteen numbers.
-        Self(unsafe { _mm512_loadu_ps(from.as_ptr()) })
-    }
-
-    #[inline(always)]
-    fn store_row(self, to: &mut [f32; ROW]) {
-        // SAFETY: AVX-512 is there (see `Avx512Lanes`); a row has room for sixteen numbers.
-        unsafe { _mm512_storeu_ps(to.as_mut_ptr(), self.0) }
-    }
-
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        // SAFETY: AVX-512 is there (see `Avx512Lanes`).
-        Self(unsafe { _mm512_min_ps(self.0, other.0) })
-    }
-
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        // SAFETY: AVX-512 is there (see `Avx512Lanes`).
-        Self(unsafe { _mm512_max_ps(self.0, other.0) })
     }
 
     #[inline(always)]
@@ -215,38 +191,9 @@ impl Lanes for Avx512Lanes {
     }
 
     #[inline(always)]
-    fn sqrt(self) -> Self {
-        // SAFETY: AVX-512 is there (see `Avx512Lanes`).
-        Self(unsafe { _mm512_sqrt_ps(self.0) })
-    }
-
-    #[inline(always)]
-    fn to_ints(self) -> Avx512Ints {
-        // SAFETY: AVX-512 is there (see `Avx512Lanes`).
-        Avx512Ints(unsafe { _mm512_castps_si512(self.0) })
-    }
-
-    #[inline(always)]
-    fn from_ints(ints: Avx512Ints) -> Self {
-        // SAFETY: AVX-512 is there (see `Avx512Lanes`).
-        Self(unsafe { _mm512_castsi512_ps(ints.0) })
-    }
-
-    #[inline(always)]
-    fn of_ints(ints: Avx512Ints) -> Self {
-        // SAFETY: AVX-512 is there (see `Avx512Lanes`).
-        Self(unsafe { _mm512_cvtepi32_ps(ints.0) })
-    }
-
-    #[inline(always)]
     fn ints_eq(a: Avx512Ints, b: Avx512Ints) -> Avx512Mask {
         // SAFETY: AVX-512 is there (see `Avx512Lanes`).
         Avx512Mask(unsafe { _mm512_cmpeq_epi32_mask(a.0, b.0) })
-    }
-
-    #[inline(always)]
-    fn select_ints(mask: Avx512Mask, yes: Avx512Ints, no: Avx512Ints) -> Avx512Ints {
-        Self::select(mask, Self::from_ints(yes), Self::from_ints(no)).to_ints()
     }
 
     #[inline(always)]

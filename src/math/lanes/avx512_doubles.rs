@@ -6,31 +6,18 @@ use std::arch::x86_64::{
     _mm512_extractf32x8_ps, _mm512_insertf32x8, _mm512_mask_blend_pd, _mm512_maskz_mov_pd,
     _mm512_mul_pd, _mm512_set1_pd, _mm512_setzero_pd, _mm512_sqrt_pd, _mm512_sub_pd,
 };
-use std::ops::{Add, Div, Mul, Sub};
 
 use super::DoubleLanes;
 use super::avx512::Avx512Lanes;
+use super::registers::pair_operators;
 
 /// Sixteen numbers of double precision in two registers. Used only by kernels that
 /// [`super::avx512::run`] has started.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Avx512Doubles(__m512d, __m512d);
 
-macro_rules! operators {
-    ($($trait:ident $name:ident $intrinsic:ident;)*) => {
-        $(impl $trait for Avx512Doubles {
-            type Output = Self;
-
-            #[inline(always)]
-            fn $name(self, other: Self) -> Self {
-                // SAFETY: AVX-512 is there (see `Avx512Doubles`).
-                unsafe { Self($intrinsic(self.0, other.0), $intrinsic(self.1, other.1)) }
-            }
-        })*
-    };
-}
-
-operators! {
+pair_operators! {
+    Avx512Doubles:
     Add add _mm512_add_pd;
     Sub sub _mm512_sub_pd;
     Mul mul _mm512_mul_pd;

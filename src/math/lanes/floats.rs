@@ -84,7 +84,10 @@ pub trait Lanes:
     fn ints_eq(a: Self::Ints, b: Self::Ints) -> Self::Mask;
 
     /// `yes` where the mask is true, else `no`.
-    fn select_ints(mask: Self::Mask, yes: Self::Ints, no: Self::Ints) -> Self::Ints;
+    #[inline(always)]
+    fn select_ints(mask: Self::Mask, yes: Self::Ints, no: Self::Ints) -> Self::Ints {
+        Self::select(mask, Self::from_ints(yes), Self::from_ints(no)).to_ints()
+    }
 
     /// Origins, directions, `t_min` and `t_max` of rays, as many as there are lanes.
     fn of_rays(rays: &[&Ray; ROW]) -> [Self; 8];

@@ -22,6 +22,8 @@ mod ints;
 mod portable;
 mod portable_doubles;
 mod portable_ints;
+#[cfg(target_arch = "x86_64")]
+mod registers;
 mod surface;
 #[cfg(test)]
 mod tests;

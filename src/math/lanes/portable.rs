@@ -138,11 +138,6 @@ impl Lanes for PortableLanes {
     }
 
     #[inline(always)]
-    fn select_ints(mask: PortableMask, yes: PortableInts, no: PortableInts) -> PortableInts {
-        Self::select(mask, Self::from_ints(yes), Self::from_ints(no)).to_ints()
-    }
-
-    #[inline(always)]
     fn mask_of_bits(bits: u32) -> PortableMask {
         let lane = |lane: usize| bits >> lane & 1 == 1;
         PortableMask(

@@ -74,12 +74,6 @@ impl<L: Lanes> Vec3Lanes<L> {
         self.x.max(self.y.max(self.z))
     }
 
-    /// The smallest component.
-    #[inline(always)]
-    pub fn min_element(self) -> L {
-        self.x.min(self.y.min(self.z))
-    }
-
     /// As [`Vec3::normalize_or`].
     #[inline(always)]
     pub fn normalize_or(self, fallback: Self) -> Self {

@@ -2,6 +2,7 @@ use super::{PathSampler, Points, Slot, dimension};
 use crate::math::{IntLanes, Lanes, ROW};
 use crate::sampling::digital_net::{PASCAL, index_in_pair};
 use crate::sampling::scramble::{LAINE_KARRAS, MIX_32};
+use crate::sampling::warp::LATTICE_CELL;
 
 /// The random numbers of eight paths, the same bits as of each [`PathSampler`].
 #[derive(Clone, Copy, Debug)]
@@ -93,7 +94,7 @@ fn pascal<L: Lanes>(y: L::Ints) -> L::Ints {
 
 #[inline(always)]
 fn unit<L: Lanes>(digits: L::Ints) -> L {
-    L::of_ints(digits.reverse_bits().shr::<8>()) * L::splat(super::LATTICE)
+    L::of_ints(digits.reverse_bits().shr::<8>()) * L::splat(LATTICE_CELL)
 }
 
 #[cfg(test)]
