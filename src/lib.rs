@@ -31,6 +31,7 @@
 //!        direct light: a light from the tree, a point on it        light
 //!        … shadow rays, traced as a batch for any hit              geometry
 //!        scatter: next ray, Russian roulette                       bsdf, sampling
+//!        exchange: what leaves the second surfaces of a cluster    integrator
 //!     add the finished paths in the order of their numbers         film
 //! pass done → snapshot → host                                      session
 //! ```
@@ -46,13 +47,17 @@
 //!   are a few without extent, each is sampled.
 //! - A diffuse vertex under a single parallelogram takes light samples alone; elsewhere they share with
 //!   the scattered ray by multiple importance. A constant sky is left to the scattered ray.
+//! - The paths of a cluster of up to 16 pixels ([`film::Cluster`]) share the light that leaves the
+//!   second diffuse surface of each, weighted so that the mean stays; what they draw for it are points
+//!   of one net ([`sampling::PathSampler::in_cluster`]). Only in mode best.
 //! - Roulette lets every path of at least a quarter of the full throughput live.
 //!
 //! # Invariants
-//! - A sample is a pure function of (scene, settings, seed, pixel, sample number). Random numbers
+//! - A sample is a pure function of (scene, settings, seed, pixel, sample number), which also tell the
+//!   other paths of its cluster: they are traced along where they are not part of the picture. Random numbers
 //!   are addressed by bounce and [`sampling::Slot`], never drawn in sequence. Threads, tiles,
 //!   passes and pauses change no bit of the picture.
-//! - [`integrator::reference()`] and [`integrator::Wavefront`] give the same bits with every
+//! - [`integrator::reference_cluster`] and [`integrator::Wavefront`] give the same bits with every
 //!   instruction set ([`math::Isa`]) and any length of batch.
 //! - [`integrator::reference_f64`] repeats every path in double precision with formulas of its own;
 //!   but for the few that rounding sends elsewhere, both give the same radiance.

@@ -79,6 +79,54 @@ impl std::str::FromStr for MaxDepth {
     }
 }
 
+/// Pixels that share their indirect light: a power of two up to 16; 1 for none, or as many as suit
+/// the scene.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct Reuse(u32);
+
+impl Reuse {
+    /// Every pixel by itself.
+    pub const NONE: Self = Self(1);
+
+    /// As many as suit the scene: 16, or 4 where much of the noise is that of many lights.
+    pub const AUTO: Self = Self(0);
+
+    /// All choices, in the order in which they are offered.
+    pub const ALL: [Self; 6] = [Self::AUTO, Self(1), Self(2), Self(4), Self(8), Self(16)];
+
+    /// The name used in the command line, the window and the metadata.
+    pub fn name(self) -> &'static str {
+        match self.0 {
+            0 => "auto",
+            2 => "2",
+            4 => "4",
+            8 => "8",
+            16 => "16",
+            _ => "1",
+        }
+    }
+
+    /// Pixels that share; 0 for [`Self::AUTO`].
+    pub fn pixels(self) -> u32 {
+        self.0
+    }
+}
+
+impl std::fmt::Display for Reuse {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl std::str::FromStr for Reuse {
+    type Err = String;
+    fn from_str(text: &str) -> Result<Self, String> {
+        (Self::ALL.into_iter())
+            .find(|reuse| text == reuse.name())
+            .ok_or_else(|| format!("'{text}' pixels cannot share: give auto, 1, 2, 4, 8 or 16"))
+    }
+}
+
 /// When an adaptive pixel may stop.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -202,6 +250,9 @@ pub struct RenderSettings {
     pub only_last_bounce: bool,
     /// Estimator of direct light.
     pub mode: Mode,
+    /// Pixels that share their indirect light (mode best only). Unbiased; the noise of pixels that
+    /// share is alike.
+    pub reuse: Reuse,
     /// Path tracer.
     pub integrator: IntegratorKind,
     /// Adaptive sampling, off when `None`.
@@ -234,6 +285,7 @@ impl Default for RenderSettings {
             max_depth: MaxDepth(5),
             only_last_bounce: false,
             mode: Mode::Best,
+            reuse: Reuse::default(),
             integrator: IntegratorKind::Wavefront,
             adaptive: None,
             seed: 0,

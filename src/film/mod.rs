@@ -1,8 +1,10 @@
 //! Floor 3: accumulated statistics of the picture, in disjoint tiles.
 
+mod cluster;
 mod pixel;
 mod tile;
 
+pub use cluster::Cluster;
 pub use pixel::PixelStats;
 pub use tile::{TILE_SIZE, Tile};
 
@@ -44,12 +46,17 @@ impl Film {
         if !self.region.contains(x, y) {
             return None;
         }
-        let (column, row) = (
-            (x - self.region.x) / TILE_SIZE,
-            (y - self.region.y) / TILE_SIZE,
-        );
-        let tile = &self.tiles[(row * self.region.width.div_ceil(TILE_SIZE) + column) as usize];
+        let column = x / TILE_SIZE - self.region.x / TILE_SIZE;
+        let tile = &self.tiles_of_row(y)[column as usize];
         Some(&tile.pixels()[tile.index(x, y)])
+    }
+
+    /// The tiles with the pixels of row `y` of the image, which the region has, from left to right.
+    pub fn tiles_of_row(&self, y: u32) -> &[Tile] {
+        let region = self.region;
+        let columns = tile::tiles_across(region.x, region.x + region.width) as usize;
+        let row = (y / TILE_SIZE - region.y / TILE_SIZE) as usize;
+        &self.tiles[row * columns..(row + 1) * columns]
     }
 
     /// Sums over all pixels: samples taken, and the relative squared error of the picture that

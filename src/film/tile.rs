@@ -4,7 +4,7 @@ use crate::image::Region;
 /// Edge of a tile in pixels.
 pub const TILE_SIZE: u32 = 32;
 
-/// Width of a block of pixels that are close together.
+/// Width of a block of pixels that are traced together.
 pub(super) const BLOCK_WIDTH: u32 = 8;
 /// Its height.
 pub(super) const BLOCK_HEIGHT: u32 = 4;
@@ -37,19 +37,6 @@ impl Tile {
         &mut self.pixels
     }
 
-    /// Numbers of all pixels, block by block of 8 × 4 pixels, so that
-    /// those that follow each other lie close together.
-    pub fn in_blocks(&self) -> impl Iterator<Item = usize> {
-        let Region { width, height, .. } = self.area;
-        let starts = move |length: u32, step: u32| (0..length).step_by(step as usize);
-        let blocks = starts(height, BLOCK_HEIGHT)
-            .flat_map(move |y| starts(width, BLOCK_WIDTH).map(move |x| (x, y)));
-        blocks.flat_map(move |(x, y)| {
-            let (right, bottom) = ((x + BLOCK_WIDTH).min(width), (y + BLOCK_HEIGHT).min(height));
-            (y..bottom).flat_map(move |y| (x..right).map(move |x| (y * width + x) as usize))
-        })
-    }
-
     /// Image coordinates of pixel number `index` of the tile.
     pub fn position(&self, index: usize) -> (u32, u32) {
         let index = index as u32;
@@ -65,47 +52,34 @@ impl Tile {
     }
 }
 
-/// Tiles that cover `region`, row by row.
+/// Tiles that cover `region`, row by row: what lies in it of a grid that begins at pixel (0, 0).
 pub(super) fn cover(region: Region) -> Vec<Tile> {
+    let (right, bottom) = (region.x + region.width, region.y + region.height);
     let mut tiles = Vec::new();
-    for y in (0..region.height).step_by(TILE_SIZE as usize) {
-        for x in (0..region.width).step_by(TILE_SIZE as usize) {
+    for (y, height) in steps(region.y, bottom) {
+        for (x, width) in steps(region.x, right) {
             let area = Region {
-                x: region.x + x,
-                y: region.y + y,
-                width: TILE_SIZE.min(region.width - x),
-                height: TILE_SIZE.min(region.height - y),
+                x,
+                y,
+                width,
+                height,
             };
-            let pixels = vec![PixelStats::default(); (area.width * area.height) as usize];
+            let pixels = vec![PixelStats::default(); (width * height) as usize];
             tiles.push(Tile { area, pixels });
         }
     }
     tiles
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+/// The number of tiles that the pixels from `start` up to `end` fall in.
+pub(super) fn tiles_across(start: u32, end: u32) -> u32 {
+    end.div_ceil(TILE_SIZE) - start / TILE_SIZE
+}
 
-    #[test]
-    fn blocks_hold_every_pixel_once() {
-        let region = Region {
-            x: 3,
-            y: 5,
-            width: 45,
-            height: 35,
-        };
-        for tile in cover(region) {
-            let mut order: Vec<_> = tile.in_blocks().collect();
-            let (x, y) = (tile.area.x, tile.area.y);
-            if tile.area.width >= BLOCK_WIDTH {
-                assert!(order[..BLOCK_WIDTH as usize].is_sorted());
-                let (right, _) = tile.position(order[BLOCK_WIDTH as usize - 1]);
-                assert_eq!(right, x + BLOCK_WIDTH - 1);
-            }
-            assert_eq!(tile.position(order[0]), (x, y));
-            order.sort_unstable();
-            assert_eq!(order, (0..tile.pixels.len()).collect::<Vec<_>>());
-        }
-    }
+/// Starts and lengths of those tiles.
+fn steps(start: u32, end: u32) -> impl Iterator<Item = (u32, u32)> {
+    (start / TILE_SIZE..end.div_ceil(TILE_SIZE)).map(move |tile| {
+        let from = (tile * TILE_SIZE).max(start);
+        (from, ((tile + 1) * TILE_SIZE).min(end) - from)
+    })
 }

@@ -3,6 +3,7 @@
 //! `path` holds the steps of a path, each a few lines; `reference` takes them for one path at a
 //! time and is the teaching text and the oracle; `wavefront` takes the same steps for a batch of
 //! paths, stage by stage. Both draw the same random numbers and give the same bits.
+//! `reuse` is how paths of neighbouring pixels lend each other their light.
 //! `double` is the reference once more in double precision, with formulas of its own.
 //! `first_hit` answers the views that need no light. Nothing here knows threads, films or clocks.
 
@@ -12,6 +13,7 @@ mod double;
 mod first_hit;
 mod path;
 mod reference;
+mod reuse;
 mod wavefront;
 
 pub use counts::PathCounts;
@@ -19,5 +21,6 @@ pub use direct::DirectPlan;
 pub use double::reference_f64;
 pub use first_hit::first_hit;
 pub use path::{Path, PathId, PathSettings, PathTracer};
-pub use reference::reference;
+pub use reference::{reference, reference_cluster};
+pub use reuse::MAX_CLUSTER;
 pub use wavefront::{BATCH_SIZE, Wavefront};

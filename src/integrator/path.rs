@@ -1,13 +1,14 @@
 use glam::{Vec2, Vec3};
 
 use super::DirectPlan;
+use super::reuse::{self, Stage};
 use crate::bsdf::{Bsdf, Lobe};
 use crate::camera::RayCamera;
 use crate::color::Rgb;
 use crate::geometry::Hit;
 use crate::light::ParallelogramLight;
 use crate::math::{Frame, Ray, offset_origin};
-use crate::sampling::{PathSampler, Slot, power_heuristic, uniform_disk};
+use crate::sampling::{Member, PathSampler, Slot, power_heuristic, uniform_disk};
 use crate::scene::{PreparedScene, SurfaceInteraction};
 use crate::settings::{MaxDepth, Mode, RenderSettings};
 
@@ -38,6 +39,9 @@ pub struct PathSettings {
     /// Independent sequences that the samples of a pixel are dealt out to, at least 1
     /// ([`PathSampler::replicated`]).
     pub replicates: u32,
+    /// Paths that share their light, a power of two up to [`super::MAX_CLUSTER`]; 1 for none, 0 for as
+    /// many as suit the scene ([`PathTracer::cluster_size`]).
+    pub reuse: u32,
 }
 
 impl From<&RenderSettings> for PathSettings {
@@ -49,6 +53,7 @@ impl From<&RenderSettings> for PathSettings {
             only_last_bounce: settings.only_last_bounce,
             seed: settings.seed,
             replicates: 1,
+            reuse: settings.reuse.pixels(),
         }
     }
 }
@@ -92,6 +97,8 @@ pub struct Path {
     /// Surfaces that scattered the path so far.
     pub bounce: u32,
     pub(super) emission_weight: EmissionWeight,
+    /// How far it has come in sharing its light.
+    pub(super) stage: Stage,
 }
 
 /// A surface point of a path, ready to scatter.
@@ -101,6 +108,8 @@ pub(super) struct Vertex<'a> {
     pub(super) frame: Frame,
     pub(super) wo: Vec3,
     pub(super) bsdf: &'a Bsdf,
+    /// The geometric normal has taken the place of the shading normal, which faces away.
+    pub(super) is_mended: bool,
 }
 
 impl Vertex<'_> {
@@ -113,7 +122,11 @@ impl Vertex<'_> {
 
     /// The shading normal on the side of `wo`, from where alone light is scattered.
     pub(super) fn lit_normal(&self) -> Vec3 {
-        let normal = self.surface.shading_normal;
+        self.lit_side(self.surface.shading_normal)
+    }
+
+    /// A `normal` of the surface on the side of `wo`.
+    pub(super) fn lit_side(&self, normal: Vec3) -> Vec3 {
         if self.wo.z < 0.0 { -normal } else { normal }
     }
 
@@ -141,6 +154,8 @@ pub struct PathTracer<'a> {
     pub(super) plan: DirectPlan,
     /// Diffuse vertices leave direct light to the light samples.
     light_samples_suffice: bool,
+    /// Paths in a cluster.
+    pub(super) cluster_size: usize,
     /// The light that all light samples go to, if that is a parallelogram, and their weight.
     pub(super) only_parallelogram: Option<(ParallelogramLight<'a>, f32)>,
 }
@@ -159,20 +174,26 @@ impl<'a> PathTracer<'a> {
             plan,
             only_parallelogram,
             light_samples_suffice: scene.light_samples_suffice(),
+            cluster_size: reuse::cluster_size(scene, &settings),
         }
     }
 
-    /// The random numbers of a path.
-    pub(super) fn sampler(&self, id: PathId) -> PathSampler {
+    /// The random numbers of path number `number` of the cluster that begins with pixel `first`.
+    pub(super) fn sampler(&self, id: PathId, (first, number): ([u32; 2], u32)) -> PathSampler {
         let PathSettings {
             seed, replicates, ..
         } = self.settings;
-        PathSampler::replicated(seed, id.pixel, id.sample, replicates)
+        let member = Member {
+            first,
+            number,
+            size: self.cluster_size as u32,
+        };
+        PathSampler::in_cluster(seed, (id.pixel, id.sample), replicates, member)
     }
 
-    /// The start of a path: its camera ray through a uniform point of the pixel (box filter).
-    pub fn start(&self, id: PathId) -> Path {
-        let sampler = self.sampler(id);
+    /// The start of a path with the numbers of `sampler`: its camera ray through a uniform point of the
+    /// pixel (box filter).
+    pub(super) fn start(&self, id: PathId, sampler: PathSampler) -> Path {
         let pixel = Vec2::new(id.pixel[0] as f32, id.pixel[1] as f32);
         let position = pixel + sampler.get_2d(0, Slot::Pixel);
         let ray = self
@@ -185,6 +206,11 @@ impl<'a> PathTracer<'a> {
             radiance: Rgb::ZERO,
             bounce: 0,
             emission_weight: EmissionWeight::Full,
+            stage: if self.cluster_size > 1 {
+                Stage::Waiting
+            } else {
+                Stage::Alone
+            },
         }
     }
 
@@ -287,16 +313,18 @@ impl<'a> PathTracer<'a> {
         };
         path.ray = Ray::new(vertex.origin(direction), direction);
         path.bounce += 1;
-        // The first continuation is always taken, as in the course.
+        // The first continuation is always taken, as in the course, and that from a receiver.
+        let is_sure = path.bounce < 2 || path.is_arriving();
         path.throughput.max_element() > 0.0
-            && (path.bounce < 2 || survives(path, sampler.get_1d(bounce, Slot::Roulette)))
+            && (is_sure || survives(path, sampler.get_1d(bounce, Slot::Roulette)))
     }
 }
 
 fn vertex(mut surface: SurfaceInteraction, wo: Vec3, bsdf: &Bsdf) -> Vertex<'_> {
     // Seen from the front of the true surface but the back of the interpolated one (or the
     // reverse), near silhouettes of coarse meshes: shade the true surface.
-    if wo.dot(surface.geometric_normal) * wo.dot(surface.shading_normal) <= 0.0 {
+    let is_mended = wo.dot(surface.geometric_normal) * wo.dot(surface.shading_normal) <= 0.0;
+    if is_mended {
         surface.shading_normal = surface.geometric_normal;
     }
     let frame = Frame::from_normal(surface.shading_normal);
@@ -305,6 +333,7 @@ fn vertex(mut surface: SurfaceInteraction, wo: Vec3, bsdf: &Bsdf) -> Vertex<'_> 
         frame,
         wo: frame.to_local(wo),
         bsdf,
+        is_mended,
     }
 }
 

@@ -87,6 +87,11 @@ impl LightSampler {
         }
     }
 
+    /// The number of parts to choose from.
+    pub fn choices(&self) -> usize {
+        self.parts.len() + self.infinite.len()
+    }
+
     /// True when nothing is ever chosen.
     pub fn is_empty(&self) -> bool {
         self.groups.is_none()

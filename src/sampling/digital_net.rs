@@ -68,6 +68,27 @@ pub(super) fn index_in_pair(pair: usize, index: u32) -> u32 {
     sum
 }
 
+/// The bits of an index below 16.
+pub(super) const PLACES: u32 = 15;
+
+/// [`index_in_pair`] of the indices below 16, which are added (modulo 2) to those of the other bits.
+pub(super) const LOW: [[u32; 16]; PAIRS] = low();
+
+const fn low() -> [[u32; 16]; PAIRS] {
+    let mut low = [[0; 16]; PAIRS];
+    let mut pair = 0;
+    while pair < PAIRS {
+        let mut index = 1;
+        while index < 16_usize {
+            let column = MATRICES[pair][index.trailing_zeros() as usize];
+            low[pair][index] = low[pair][index & (index - 1)] ^ column;
+            index += 1;
+        }
+        pair += 1;
+    }
+    low
+}
+
 /// The bits that take part in each step of Pascal's triangle.
 pub(super) const PASCAL: [u32; 5] = [
     0x0000_FFFF,

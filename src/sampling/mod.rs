@@ -16,7 +16,7 @@ pub use distribution_1d::Distribution1d;
 pub use distribution_2d::Distribution2d;
 pub use heuristic::power_heuristic;
 pub use lanes::{BilinearLanes, cosine_hemisphere_lanes};
-pub use path_sampler::{PathSampler, PathSamplerLanes, Slot};
+pub use path_sampler::{Member, PathSampler, PathSamplerLanes, Slot};
 pub use warp::{
     UNIFORM_HEMISPHERE_PDF, UNIFORM_SPHERE_PDF, cosine_hemisphere, cosine_hemisphere_pdf,
     uniform_cone, uniform_cone_pdf, uniform_disk, uniform_hemisphere, uniform_sphere,

@@ -45,6 +45,15 @@ impl Slot {
         }
     }
 
+    /// True for what decides about the light that leaves the shared vertex of a path, or where that is.
+    fn is_shared(self, bounce: u32) -> bool {
+        let is_direct = matches!(
+            self,
+            Self::LightChoice(_) | Self::LightPoint(_) | Self::Hemisphere(_)
+        );
+        !matches!(self, Self::Pixel | Self::Lens) && (bounce > 0 || !is_direct)
+    }
+
     fn points(self, bounce: u32) -> Points {
         match (self, bounce) {
             (Self::Pixel, 0) => Points::Pair(0),
@@ -75,13 +84,50 @@ enum Points {
 /// next 2ᵏ). The pixel's own, and the scatter and (first) light slots of the first three bounces
 /// are pairs of one net, so that they are spread well together; every other slot has the points in
 /// an order of its own, but for roulette, whose numbers are independent. Different pixels, seeds and
-/// replicates are independent.
+/// replicates are independent; but what the paths of a cluster draw for the light that they share
+/// ([`Self::in_cluster`]) are points of one sequence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PathSampler {
+    /// Of the pixel.
+    own: Sequence,
+    /// Of the cluster.
+    shared: Sequence,
+}
+
+/// A point of a randomized net.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Sequence {
     /// Of seed, pixel and replicate.
     key: [u32; 2],
-    /// Number of the sample in its replicate.
+    /// Number of the point in its replicate.
     index: u32,
+}
+
+/// The place of a path in its cluster.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Member {
+    /// The first pixel of the cluster.
+    pub first: [u32; 2],
+    /// Number of the path in the cluster.
+    pub number: u32,
+    /// Paths in the cluster, a power of two.
+    pub size: u32,
+}
+
+/// Sets the keys of clusters apart from those of pixels.
+const OF_CLUSTERS: u64 = 0xA076_1D64_78BD_642F;
+
+impl Sequence {
+    fn new(seed: u64, pixel: [u32; 2], sample: u32, replicates: u32) -> Self {
+        let pixel = u64::from(pixel[0]) | (u64::from(pixel[1]) << 32);
+        let key = mix_64(mix_64(seed ^ 0x9E37_79B9_7F4A_7C15).wrapping_add(pixel));
+        let replicate = u64::from(sample % replicates);
+        let key = mix_64(key ^ replicate.wrapping_mul(0xD1B5_4A32_D192_ED03));
+        Self {
+            key: [key as u32, (key >> 32) as u32],
+            index: sample / replicates,
+        }
+    }
 }
 
 impl PathSampler {
@@ -97,25 +143,58 @@ impl PathSampler {
     /// error, while the spread of low-discrepancy samples is too large (Owen 1997, "Monte Carlo
     /// Variance of Scrambled Net Quadrature").
     pub fn replicated(seed: u64, pixel: [u32; 2], sample: u32, replicates: u32) -> Self {
-        let pixel = u64::from(pixel[0]) | (u64::from(pixel[1]) << 32);
-        let key = mix_64(mix_64(seed ^ 0x9E37_79B9_7F4A_7C15).wrapping_add(pixel));
-        let replicate = u64::from(sample % replicates);
-        let key = mix_64(key ^ replicate.wrapping_mul(0xD1B5_4A32_D192_ED03));
-        Self {
-            key: [key as u32, (key >> 32) as u32],
-            index: sample / replicates,
+        let own = Sequence::new(seed, pixel, sample, replicates);
+        Self { own, shared: own }
+    }
+
+    /// The same for a path that shares its light with the others of a cluster: from its scattering at
+    /// the first surface on, sample i of all paths of a cluster takes the next `member.size` points of
+    /// one sequence. Which path takes which changes from sample to sample, so that each has points
+    /// from everywhere.
+    pub fn in_cluster(
+        seed: u64,
+        (pixel, sample): ([u32; 2], u32),
+        replicates: u32,
+        member: Member,
+    ) -> Self {
+        let own = Sequence::new(seed, pixel, sample, replicates);
+        let Member {
+            first,
+            number,
+            size,
+        } = member;
+        if size == 1 {
+            return Self { own, shared: own };
+        }
+        let of_cluster = Sequence::new(seed ^ OF_CLUSTERS, first, sample, replicates);
+        let turn = (of_cluster.index & (size - 1)).reverse_bits() >> (32 - size.ilog2());
+        let shared = Sequence {
+            index: of_cluster.index.wrapping_mul(size) | (number ^ turn),
+            ..of_cluster
+        };
+        Self { own, shared }
+    }
+
+    /// The sequence of a slot.
+    #[inline(always)]
+    fn sequence(&self, bounce: u32, slot: Slot) -> &Sequence {
+        if slot.is_shared(bounce) {
+            &self.shared
+        } else {
+            &self.own
         }
     }
 
     /// Two numbers in [0, 1), on the lattice of multiples of 2⁻²⁴ (never 1).
     pub fn get_2d(&self, bounce: u32, slot: Slot) -> Vec2 {
-        let seed_x = mix_32(self.key[0] ^ dimension(bounce, slot));
-        let seed_y = mix_32(self.key[1] ^ seed_x);
+        let Sequence { key, index } = *self.sequence(bounce, slot);
+        let seed_x = mix_32(key[0] ^ dimension(bounce, slot));
+        let seed_y = mix_32(key[1] ^ seed_x);
         let index = match slot.points(bounce) {
-            Points::Pair(pair) => index_in_pair(pair, self.index),
-            Points::Shuffled => shuffle(self.index, mix_32(seed_x ^ seed_y)),
+            Points::Pair(pair) => index_in_pair(pair, index),
+            Points::Shuffled => shuffle(index, mix_32(seed_x ^ seed_y)),
             Points::Independent => {
-                let x = mix_32(seed_x ^ self.index.wrapping_mul(INDEPENDENT));
+                let x = mix_32(seed_x ^ index.wrapping_mul(INDEPENDENT));
                 return Vec2::new(unit(x), unit(mix_32(seed_y ^ x)));
             }
         };

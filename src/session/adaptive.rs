@@ -1,6 +1,6 @@
 //! When adaptive sampling ends a pixel. Biased: a pixel that has not met its light yet looks done.
 
-use crate::film::{Film, PixelStats, TILE_SIZE};
+use crate::film::{Film, PixelStats};
 use crate::settings::{Adaptive, AdaptiveRule, Mode};
 
 /// 97.5 % quantile of the normal distribution: the half width of a 95 % interval in deviations.
@@ -120,13 +120,11 @@ fn close_agreed(film: &mut Film, passed: &[bool]) {
 /// The pixels of the film row by row.
 pub(super) fn flattened(film: &Film) -> Vec<PixelStats> {
     let region = film.region();
-    let columns = region.width.div_ceil(TILE_SIZE) as usize;
     let mut flat = Vec::with_capacity((region.width * region.height) as usize);
-    for y in 0..region.height {
-        let tile_row = (y / TILE_SIZE) as usize * columns;
-        for tile in &film.tiles()[tile_row..tile_row + columns] {
+    for y in region.y..region.y + region.height {
+        for tile in film.tiles_of_row(y) {
             let area = tile.area();
-            let start = ((region.y + y - area.y) * area.width) as usize;
+            let start = tile.index(area.x, y);
             flat.extend_from_slice(&tile.pixels()[start..start + area.width as usize]);
         }
     }

@@ -3,7 +3,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use rayon::prelude::*;
 
 use super::workers::{WorkerArrays, Workers};
-use crate::film::{Film, Tile};
+use crate::film::{Cluster, Film, PixelStats, Tile};
 use crate::integrator::{PathCounts, PathId, PathTracer};
 use crate::settings::IntegratorKind;
 
@@ -53,7 +53,8 @@ pub(super) fn render_pass(
             .map(|tile| {
                 workers.with_arrays(|arrays| {
                     let mut counts = PathCounts::default();
-                    while next_batch(tile, target, workers.batch_size(), &mut arrays.ids) {
+                    let sizes = (workers.batch_size(), tracer.cluster_size() as u32);
+                    while next_batch(tile, target, sizes, &mut arrays.ids) {
                         if is_over() {
                             return (counts, false);
                         }
@@ -74,27 +75,25 @@ pub(super) fn render_pass(
     })
 }
 
-/// Collects up to `size` of the samples that `tile` still lacks, lowest numbers first; false when
-/// there are none.
-fn next_batch(tile: &Tile, target: u32, size: usize, ids: &mut Vec<PathId>) -> bool {
+/// Collects up to `size` of the samples that `tile` still lacks, lowest numbers first, in whole
+/// clusters of pixels; false when there are none.
+fn next_batch(
+    tile: &Tile,
+    target: u32,
+    (size, cluster_size): (usize, u32),
+    ids: &mut Vec<PathId>,
+) -> bool {
     ids.clear();
-    let open = || {
-        tile.in_blocks()
-            .map(|index| (index, &tile.pixels()[index]))
-            .filter(|(_, pixel)| !pixel.is_closed())
-    };
-    let first = open()
-        .map(|(_, pixel)| pixel.count())
+    let counts = || (tile.clusters(cluster_size)).map(|cluster| (cluster, fewest(tile, &cluster)));
+    let first = counts()
+        .filter_map(|(_, count)| count)
         .min()
         .unwrap_or(target);
     for sample in first..target {
-        for (index, _) in open().filter(|(_, pixel)| pixel.count() <= sample) {
-            let (x, y) = tile.position(index);
-            ids.push(PathId {
-                pixel: [x, y],
-                sample,
-            });
-            if ids.len() == size {
+        let lacking = counts().filter(|(_, count)| count.is_some_and(|count| count <= sample));
+        for (cluster, _) in lacking {
+            ids.extend(cluster.pixels().map(|pixel| PathId { pixel, sample }));
+            if ids.len() >= size {
                 return true;
             }
         }
@@ -102,10 +101,29 @@ fn next_batch(tile: &Tile, target: u32, size: usize, ids: &mut Vec<PathId>) -> b
     !ids.is_empty()
 }
 
+/// The fewest samples that an open pixel of `cluster` has that lies in `tile`; `None` when all are
+/// closed. Paths of closed pixels and of pixels outside are needed as long as others share theirs.
+fn fewest(tile: &Tile, cluster: &Cluster) -> Option<u32> {
+    (cluster.pixels())
+        .filter(|&[x, y]| tile.area().contains(x, y))
+        .map(|[x, y]| &tile.pixels()[tile.index(x, y)])
+        .filter(|pixel| !pixel.is_closed())
+        .map(PixelStats::count)
+        .min()
+}
+
+/// Adds the samples to the pixels of `tile` that lack them.
 fn add_batch(tile: &mut Tile, arrays: &WorkerArrays) {
     for (id, &radiance) in arrays.ids.iter().zip(&arrays.radiance) {
-        let index = tile.index(id.pixel[0], id.pixel[1]);
-        tile.pixels_mut()[index].add(radiance);
+        let [x, y] = id.pixel;
+        if !tile.area().contains(x, y) {
+            continue;
+        }
+        let index = tile.index(x, y);
+        let pixel = &mut tile.pixels_mut()[index];
+        if !pixel.is_closed() && pixel.count() == id.sample {
+            pixel.add(radiance);
+        }
     }
 }
 

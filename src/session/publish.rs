@@ -6,7 +6,7 @@ use super::preview::Preview;
 use super::workers::Workers;
 use super::{RenderJob, SampleCounts, Snapshot};
 use crate::color::Rgb;
-use crate::film::{Film, FilmSummary, PixelStats, TILE_SIZE};
+use crate::film::{Film, FilmSummary, PixelStats};
 use crate::settings::View;
 
 /// What a snapshot says beside its pixels.
@@ -123,7 +123,6 @@ fn assemble<T: Copy + Default + Send>(
     value: impl Fn(&PixelStats, u32, u32) -> T + Sync,
 ) -> Vec<T> {
     let region = film.region();
-    let columns = region.width.div_ceil(TILE_SIZE) as usize;
     let mut out = vec![T::default(); width * height];
     workers.install(|| {
         out.par_chunks_mut(width)
@@ -141,8 +140,7 @@ fn assemble<T: Copy + Default + Send>(
                 for x in (0..region.x as usize).chain(right..width) {
                     row[x] = outside(x as u32, y);
                 }
-                let tile_row = ((y - region.y) / TILE_SIZE) as usize * columns;
-                for tile in &film.tiles()[tile_row..tile_row + columns] {
+                for tile in film.tiles_of_row(y) {
                     let area = tile.area();
                     let start = tile.index(area.x, y);
                     for (i, pixel) in tile.pixels()[start..start + area.width as usize]

@@ -3,7 +3,7 @@ use std::sync::Mutex;
 use rayon::ThreadPool;
 
 use crate::color::Rgb;
-use crate::integrator::{BATCH_SIZE, PathCounts, PathId, PathTracer, Wavefront, reference};
+use crate::integrator::{BATCH_SIZE, PathCounts, PathId, PathTracer, Wavefront, reference_cluster};
 use crate::settings::IntegratorKind;
 
 /// Priority of the workers of a window (nice value): they have the whole machine while the window
@@ -100,13 +100,16 @@ impl WorkerArrays {
     ) {
         debug_assert!(self.ids.len() <= BATCH_SIZE);
         self.radiance.clear();
+        self.radiance.resize(self.ids.len(), Rgb::ZERO);
         match integrator {
             IntegratorKind::Reference => {
-                self.radiance
-                    .extend(self.ids.iter().map(|&id| reference(tracer, id, counts)));
+                let size = tracer.cluster_size();
+                let clusters = self.ids.chunks(size).zip(self.radiance.chunks_mut(size));
+                for (ids, radiance) in clusters {
+                    reference_cluster(tracer, ids, radiance, counts);
+                }
             }
             IntegratorKind::Wavefront => {
-                self.radiance.resize(self.ids.len(), Rgb::ZERO);
                 self.wavefront
                     .trace(tracer, &self.ids, &mut self.radiance, counts);
             }

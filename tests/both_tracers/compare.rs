@@ -4,7 +4,9 @@ use rayon::prelude::*;
 use softbox::camera::RayCamera;
 use softbox::color::Rgb;
 use softbox::geometry::TraceCounts;
-use softbox::integrator::{PathCounts, PathId, PathSettings, PathTracer, Wavefront, reference};
+use softbox::integrator::{
+    PathCounts, PathId, PathSettings, PathTracer, Wavefront, reference_cluster,
+};
 use softbox::math::Isa;
 use softbox::scene::{Instancing, PrepareSettings, PreparedScene, prepare};
 
@@ -15,7 +17,7 @@ const WIDTH: u32 = 23;
 const HEIGHT: u32 = 17;
 const SAMPLES: u32 = 2;
 
-/// Paths in a batch: lanes that are full, and such that lack one path, nearly all or most.
+/// Clusters in a batch: lanes that are full, and such that lack one path, nearly all or most.
 const BATCHES: [usize; 5] = [1, 7, 8, 61, 777];
 
 /// Holds the wavefront against the reference in all of `settings`.
@@ -42,7 +44,9 @@ fn what_differs(
     camera: &RayCamera,
     settings: PathSettings,
 ) -> Option<String> {
-    let (expected, work) = by_reference(&PathTracer::new(&scenes[0], camera, settings));
+    let tracer = PathTracer::new(&scenes[0], camera, settings);
+    let size = tracer.cluster_size();
+    let (expected, work) = by_reference(&tracer);
     if !settings.only_last_bounce && expected.iter().all(|r| *r == Rgb::ZERO) {
         return Some(format!("{settings:?} is dark"));
     }
@@ -50,7 +54,7 @@ fn what_differs(
         let (radiance, counts) = by_wavefront(&PathTracer::new(scene, camera, settings), batch);
         let isa = scene.aggregate().isa();
         let case = || format!("{settings:?}, {isa:?}, by {batch}");
-        if let Some(path) = first_difference(&radiance, &expected) {
+        if let Some(path) = first_difference(ids(size), &radiance, &expected) {
             return Some(format!("{}, {path}", case()));
         }
         if counts != work {
@@ -69,26 +73,32 @@ fn as_prepared((scene, _): &View, instancing: Instancing, isa: Isa) -> PreparedS
     prepare(scene, &settings, &|_, _| ControlFlow::Continue(())).expect("nothing asks it to stop")
 }
 
-fn ids() -> Vec<PathId> {
-    (0..WIDTH * HEIGHT * SAMPLES)
+/// The paths, as many as make whole clusters: neighbours in a row of pixels.
+fn ids(cluster: usize) -> Vec<PathId> {
+    let pixels = WIDTH * HEIGHT;
+    let paths = pixels * SAMPLES / cluster as u32 * cluster as u32;
+    (0..paths)
         .map(|i| PathId {
-            pixel: [i / SAMPLES % WIDTH, i / SAMPLES / WIDTH],
-            sample: i % SAMPLES,
+            pixel: [i % pixels % WIDTH, i % pixels / WIDTH],
+            sample: i / pixels,
         })
         .collect()
 }
 
 fn by_reference(tracer: &PathTracer<'_>) -> (Vec<Rgb>, PathCounts) {
     let mut counts = PathCounts::default();
-    let radiance = ids()
-        .iter()
-        .map(|&id| reference(tracer, id, &mut counts))
-        .collect();
+    let size = tracer.cluster_size();
+    let ids = ids(size);
+    let mut radiance = vec![Rgb::splat(f32::NAN); ids.len()];
+    for (ids, radiance) in ids.chunks(size).zip(radiance.chunks_mut(size)) {
+        reference_cluster(tracer, ids, radiance, &mut counts);
+    }
     (radiance, without_tests(counts))
 }
 
 fn by_wavefront(tracer: &PathTracer<'_>, batch: usize) -> (Vec<Rgb>, PathCounts) {
-    let ids = ids();
+    let size = tracer.cluster_size();
+    let (ids, batch) = (ids(size), batch * size);
     let mut radiance = vec![Rgb::splat(f32::NAN); ids.len()];
     let (mut wavefront, mut counts) = (Wavefront::default(), PathCounts::default());
     for (ids, radiance) in ids.chunks(batch).zip(radiance.chunks_mut(batch)) {
@@ -109,9 +119,9 @@ fn without_tests(counts: PathCounts) -> PathCounts {
 }
 
 /// The first path whose radiance has other bits than expected.
-fn first_difference(radiance: &[Rgb], expected: &[Rgb]) -> Option<String> {
+fn first_difference(ids: Vec<PathId>, radiance: &[Rgb], expected: &[Rgb]) -> Option<String> {
     let bits = |r: &Rgb| r.to_array().map(f32::to_bits);
-    let mut paths = ids().into_iter().zip(radiance.iter().zip(expected));
+    let mut paths = ids.into_iter().zip(radiance.iter().zip(expected));
     let (id, (radiance, expected)) = paths.find(|(_, (a, b))| bits(a) != bits(b))?;
     Some(format!("{id:?} is {radiance}, not {expected}"))
 }

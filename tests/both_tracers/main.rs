@@ -21,6 +21,7 @@ fn settings(mode: Mode) -> PathSettings {
         only_last_bounce: false,
         seed: 1,
         replicates: 1,
+        reuse: 1,
     }
 }
 
@@ -51,7 +52,22 @@ fn all_settings() -> Vec<PathSettings> {
             ..settings(mode)
         });
     }
+    all.extend(shared());
     all
+}
+
+/// Clusters of all sizes, of paths that end before and after their shared vertices.
+fn shared() -> impl Iterator<Item = PathSettings> {
+    let all = [(2, 6, 1), (4, 2, 1), (8, 5, 2), (16, 5, 1), (4, 1, 1)];
+    all.into_iter().flat_map(|(reuse, depth, light_samples)| {
+        [false, true].map(|only_last_bounce| PathSettings {
+            reuse,
+            light_samples,
+            max_depth: MaxDepth(depth),
+            only_last_bounce,
+            ..settings(Mode::Best)
+        })
+    })
 }
 
 #[test]

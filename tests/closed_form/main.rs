@@ -9,7 +9,8 @@ use std::f64::consts::PI;
 use glam::{DMat4, DVec3};
 use softbox::camera::Camera;
 use softbox::color::Rgb;
-use softbox::scene::{LightKind, Scene, SceneBuilder, Surface};
+use softbox::integrator::PathSettings;
+use softbox::scene::{LightKind, PreparedScene, Scene, SceneBuilder, Surface};
 use softbox::settings::{MaxDepth, Mode};
 use support::measure::{camera, measure, prepared, settings};
 use support::scenes::{glowing, inside_out, sphere_mesh};
@@ -47,19 +48,43 @@ fn check_modes(
         } else {
             samples
         };
-        let estimate = measure(&scene, camera, settings(mode, depth), samples);
-        let (mean, error) = (estimate.mean(0), estimate.standard_error(0));
-        // Single precision of the scene itself.
-        let rounding = 2e-6 * exact;
-        assert!(
-            (mean - exact).abs() <= 4.0 * error + rounding,
-            "{name}, {mode:?}, depth {depth}: {mean} ± {error}, exactly {exact}"
+        let by_themselves = settings(mode, depth);
+        check_mode(
+            (name, mode),
+            (&scene, camera, by_themselves),
+            samples,
+            exact,
         );
-        assert!(
-            error <= PRECISION * exact + 1e-12,
-            "{name}, {mode:?}: standard error {error} of {exact}"
-        );
+        if mode == Mode::Best {
+            let shared = PathSettings {
+                reuse: 4,
+                ..by_themselves
+            };
+            let name = format!("{name}, shared");
+            check_mode((&name, mode), (&scene, camera, shared), samples, exact);
+        }
     }
+}
+
+fn check_mode(
+    (name, mode): (&str, Mode),
+    (scene, camera, settings): (&PreparedScene, &Camera, PathSettings),
+    samples: u32,
+    exact: f64,
+) {
+    let depth = settings.max_depth;
+    let estimate = measure(scene, camera, settings, samples);
+    let (mean, error) = (estimate.mean(0), estimate.standard_error(0));
+    // Single precision of the scene itself.
+    let rounding = 2e-6 * exact;
+    assert!(
+        (mean - exact).abs() <= 4.0 * error + rounding,
+        "{name}, {mode:?}, depth {depth}: {mean} ± {error}, exactly {exact}"
+    );
+    assert!(
+        error <= PRECISION * exact + 1e-12,
+        "{name}, {mode:?}: standard error {error} of {exact}"
+    );
 }
 
 fn power_sum(rho: f64, terms: MaxDepth) -> f64 {

@@ -29,6 +29,7 @@ fn render(scene: &Scene, depth: u32, course_compatible: bool) -> Vec<PixelStats>
         only_last_bounce: false,
         seed: 3,
         replicates: 1,
+        reuse: 1,
     };
     let scene = prepared_as(scene, course_compatible);
     picture(&scene, &camera, settings, SIZE, (0, 4)).0
@@ -230,6 +231,7 @@ fn every_scene_renders_in_every_mode() {
                     only_last_bounce: false,
                     seed: 0,
                     replicates: 1,
+                    reuse: 1,
                 };
                 let (pixels, counts) = picture(&prepared, &camera, settings, (64, 48), (0, 1));
                 let what = format!("{file} {mode:?}, course-compatible: {course_compatible}");

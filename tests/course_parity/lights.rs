@@ -41,6 +41,7 @@ fn radiance(builder: SceneBuilder, mode: Mode) -> f64 {
         only_last_bounce: false,
         seed: 0,
         replicates: 1,
+        reuse: 1,
     };
     let scene = prepared_as(&builder.finish(), true);
     let (pixels, counts) = picture(&scene, &camera, settings, (2, 2), (0, 4000));

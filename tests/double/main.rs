@@ -17,6 +17,7 @@ const SETTINGS: PathSettings = PathSettings {
     only_last_bounce: false,
     seed: 1,
     replicates: 1,
+    reuse: 1,
 };
 
 fn compare(view: &View, settings: PathSettings, samples: u32) -> Comparison {

@@ -1,4 +1,4 @@
-//! Test S11: the modes, and different numbers of light samples, agree.
+//! Test S11: the modes, paths that share their light, and different numbers of light samples, agree.
 
 use softbox::integrator::PathSettings;
 use softbox::settings::{MaxDepth, Mode};
@@ -27,10 +27,17 @@ fn pictures(view: &View, settings: &[(String, PathSettings, u32)]) -> Vec<Pictur
         .collect()
 }
 
-/// Every mode of `view` at `depth`.
+/// Every mode of `view` at `depth`, and paths that share with those of pixels far away.
 fn check(view: &View, depth: MaxDepth) {
-    let settings = Mode::ALL.map(|mode| (mode.name().to_owned(), settings(mode, depth), SAMPLES));
-    let pictures = pictures(view, &settings);
+    let modes = Mode::ALL.map(|mode| (mode.name().to_owned(), settings(mode, depth), SAMPLES));
+    let shared = [4, 16].map(|reuse| {
+        let settings = PathSettings {
+            reuse,
+            ..settings(Mode::Best, depth)
+        };
+        (format!("best, shared by {reuse}"), settings, SAMPLES / 4)
+    });
+    let pictures = pictures(view, &[&modes[..], &shared[..]].concat());
     let (_, best) = &pictures[2];
     assert!(
         best.iter().any(|block| block.mean(1) > 0.05),

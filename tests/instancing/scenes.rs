@@ -21,6 +21,7 @@ pub(crate) const SETTINGS: PathSettings = PathSettings {
     only_last_bounce: false,
     seed: 3,
     replicates: 1,
+    reuse: 1,
 };
 
 /// A closed lumpy ball of radius about 1 with two material slots; 4 · `n`² − 4 · `n` triangles.

@@ -68,6 +68,7 @@ pub fn settings(mode: Mode, max_depth: MaxDepth) -> PathSettings {
         only_last_bounce: false,
         seed: 1,
         replicates: 1,
+        reuse: 1,
     }
 }
 
@@ -150,15 +151,32 @@ fn pixel_means(tracer: &PathTracer<'_>, pixel: [u32; 2], length: u32) -> Estimat
         .reduce(Estimate::default, Estimate::merge)
 }
 
-/// The means of every `length` paths.
+/// The means of every `length` paths; each leads a cluster of its own, with pixels to the right and
+/// below.
 fn replicate_means(tracer: &PathTracer<'_>, ids: &[PathId], length: usize) -> Estimate {
-    let mut radiance = vec![glam::Vec3::ZERO; ids.len()];
+    let size = tracer.cluster_size() as u32;
+    let clusters: Vec<PathId> = ids
+        .iter()
+        .flat_map(
+            |&PathId {
+                 pixel: [x, y],
+                 sample,
+             }| {
+                (0..size).map(move |i| PathId {
+                    pixel: [x + i % 4, y + i / 4],
+                    sample,
+                })
+            },
+        )
+        .collect();
+    let mut radiance = vec![glam::Vec3::ZERO; clusters.len()];
     let mut counts = PathCounts::default();
-    Wavefront::default().trace(tracer, ids, &mut radiance, &mut counts);
+    Wavefront::default().trace(tracer, &clusters, &mut radiance, &mut counts);
     assert_eq!(counts.invalid_samples, 0);
     let mut estimate = Estimate::default();
-    for samples in radiance.chunks_exact(length) {
-        let sum: DVec3 = samples.iter().map(|r| r.as_dvec3()).sum();
+    for samples in radiance.chunks_exact(length * size as usize) {
+        let own = samples.iter().step_by(size as usize);
+        let sum: DVec3 = own.map(|r| r.as_dvec3()).sum();
         estimate.add((sum / length as f64).to_array());
     }
     estimate

@@ -83,6 +83,7 @@ fn add_settings(line: &mut Line, settings: &RenderSettings) {
     line.maybe("--time-limit", s.stop.seconds);
     line.maybe("--target-error", s.stop.relative_error);
     line.option("--mode", name_of(s.mode));
+    line.unless_default("--reuse", s.reuse, d.reuse, s.reuse.to_string());
     line.option("--light-samples", s.light_samples);
     line.option("--max-depth", s.max_depth);
     line.option("--seed", s.seed);

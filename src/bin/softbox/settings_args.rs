@@ -7,8 +7,8 @@ use softbox::display::{DisplaySettings, ToneCurve};
 use softbox::image::Region;
 use softbox::math::Isa;
 use softbox::settings::{
-    Adaptive, AdaptiveRule, CameraRule, IntegratorKind, MaxDepth, Mode, RenderSettings, StopRule,
-    View,
+    Adaptive, AdaptiveRule, CameraRule, IntegratorKind, MaxDepth, Mode, RenderSettings, Reuse,
+    StopRule, View,
 };
 
 use crate::job::{CameraChoice, FieldOfView};
@@ -60,6 +60,9 @@ pub(crate) struct SettingsArgs {
     /// Estimator of direct light: hemisphere, importance or best [default: best; with -f importance]
     #[arg(long, value_parser = values::named::<Mode>)]
     pub(crate) mode: Option<Mode>,
+    /// Pixels that share their indirect light, with mode best: auto, 1, 2, 4, 8 or 16 [default: auto]
+    #[arg(long, value_name = "N")]
+    pub(crate) reuse: Option<Reuse>,
     /// Path tracer: wavefront, or the slow and plain reference
     #[arg(long, value_parser = values::named::<IntegratorKind>)]
     pub(crate) integrator: Option<IntegratorKind>,
@@ -155,6 +158,7 @@ impl SettingsArgs {
         set(&mut settings.max_depth, self.max_depth);
         settings.only_last_bounce |= self.only_last_bounce;
         set(&mut settings.mode, self.mode);
+        set(&mut settings.reuse, self.reuse);
         set(&mut settings.integrator, self.integrator);
         set(&mut settings.seed, self.seed);
         settings.course_compatible |= self.course_compatible;

@@ -113,7 +113,7 @@ pub fn reference_f64(tracer: &PathTracer<'_>, id: PathId) -> DVec3 {
 }
 
 fn start(tracer: &PathTracer<'_>, id: PathId) -> Path {
-    let sampler = tracer.sampler(id);
+    let sampler = tracer.sampler(id, (id.pixel, 0));
     let pixel = glam::UVec2::from_array(id.pixel).as_dvec2();
     let position = pixel + sampler.get_2d(0, Slot::Pixel).as_dvec2();
     let lens = || warp::disk(sampler.get_2d(0, Slot::Lens).as_dvec2());

@@ -86,7 +86,7 @@ impl Shade<'_, '_> {
             return;
         }
         if self.tracer.plan.samples_hemisphere() {
-            return self.direct_light_one_by_one(group.first, group.lanes, &group.surface.store());
+            return self.direct_light_one_by_one(group, &group.surface.store());
         }
         let from = ContextLanes {
             point: group.surface.point,
@@ -169,8 +169,8 @@ impl Shade<'_, '_> {
         let rays = rays(origin, direction, [zero, t_max]);
         let contribution = contribution.store();
         for lane in set_bits(bits) {
-            let owner = self.paths.states[group.first + lane].id;
-            (self.direct).push_shadow(owner, rays[lane], contribution.get(lane));
+            let tally = group.tallies[lane];
+            (self.direct).push_shadow(tally, rays[lane], contribution.get(lane));
         }
         bits.count_ones()
     }

@@ -7,6 +7,7 @@
 mod direct;
 mod paths;
 mod queue;
+mod reuse;
 mod scatter;
 mod shade;
 mod start;
@@ -20,6 +21,7 @@ use crate::math::{ROW, run_lanes};
 use crate::sampling::PathSampler;
 use paths::Paths;
 use queue::DirectQueues;
+use reuse::Reuse;
 use shade::Shade;
 use start::Start;
 
@@ -42,15 +44,19 @@ pub struct Wavefront {
     /// Those alive after this bounce.
     next: Paths,
     direct: DirectQueues,
+    reuse: Reuse,
+    /// Of all paths, and behind them what leaves their shared vertices.
+    radiance: Vec<Rgb>,
 }
 
 impl Wavefront {
     /// Writes the radiance of each path of `ids` to `radiance`: the bits that
-    /// [`super::reference()`] gives. Camera rays go fastest if every 32 paths in a row belong to a
+    /// [`super::reference_cluster`] gives for the clusters of `ids`, which follow each other
+    /// ([`PathTracer::cluster_size`]). Camera rays go fastest if every 32 paths in a row belong to a
     /// compact group of pixels.
     ///
     /// # Panics
-    /// When the slices differ in length.
+    /// When the slices differ in length or the last cluster is not whole.
     pub fn trace(
         &mut self,
         tracer: &PathTracer<'_>,
@@ -59,16 +65,21 @@ impl Wavefront {
         counts: &mut PathCounts,
     ) {
         assert_eq!(ids.len(), radiance.len());
-        radiance.fill(Rgb::ZERO);
+        self.reuse.begin(tracer, ids.len());
+        let tallies = ids.len() * if self.reuse.is_on() { 2 } else { 1 };
+        self.radiance.clear();
+        self.radiance.resize(tallies, Rgb::ZERO);
         self.start(tracer, ids);
         counts.camera_rays += ids.len() as u64;
         let mut bounce = 0;
         while !self.paths.is_empty() {
             self.trace_rays(tracer, bounce == 0, counts);
-            self.shade(tracer, bounce, radiance, counts);
+            self.shade(tracer, bounce, counts);
             std::mem::swap(&mut self.paths, &mut self.next);
             bounce += 1;
         }
+        self.reuse.exchange(tracer, &mut self.radiance, counts);
+        radiance.copy_from_slice(&self.radiance[..ids.len()]);
         for radiance in radiance {
             if !is_valid_radiance(*radiance) {
                 counts.invalid_samples += 1;
@@ -80,8 +91,11 @@ impl Wavefront {
     fn start(&mut self, tracer: &PathTracer<'_>, ids: &[PathId]) {
         self.paths.clear();
         self.samplers.clear();
-        self.samplers
-            .extend(ids.iter().map(|&id| tracer.sampler(id)));
+        for cluster in ids.chunks(tracer.cluster_size()) {
+            let samplers = (cluster.iter().zip(0..))
+                .map(|(&id, number)| tracer.sampler(id, (cluster[0].pixel, number)));
+            self.samplers.extend(samplers);
+        }
         if tracer.camera.is_pinhole() {
             let start = Start {
                 tracer,
@@ -91,8 +105,9 @@ impl Wavefront {
             };
             return run_lanes(tracer.scene.aggregate().isa(), start);
         }
-        for (number, &id) in ids.iter().enumerate() {
-            self.paths.push(number as u32, &tracer.start(id));
+        for (number, (&id, &sampler)) in (0..).zip(ids.iter().zip(&self.samplers)) {
+            self.paths
+                .push((number, number), &tracer.start(id, sampler));
         }
     }
 
@@ -112,13 +127,7 @@ impl Wavefront {
     }
 
     /// Emission, direct light, and the next rays of the paths that go on.
-    fn shade(
-        &mut self,
-        tracer: &PathTracer<'_>,
-        bounce: u32,
-        radiance: &mut [Rgb],
-        counts: &mut PathCounts,
-    ) {
+    fn shade(&mut self, tracer: &PathTracer<'_>, bounce: u32, counts: &mut PathCounts) {
         self.next.clear();
         let part = (MOST_DIRECT / tracer.plan.len().max(1))
             .max(ROW)
@@ -131,13 +140,14 @@ impl Wavefront {
                 samplers: &self.samplers,
                 bounce,
                 range: first..(first + part).min(self.paths.len()),
-                radiance: &mut *radiance,
+                radiance: &mut self.radiance,
+                reuse: &mut self.reuse,
                 next: &mut self.next,
                 direct: &mut self.direct,
                 counts: &mut *counts,
             };
             run_lanes(tracer.scene.aggregate().isa(), shade);
-            self.direct.trace(tracer, radiance, counts);
+            self.direct.trace(tracer, &mut self.radiance, counts);
         }
     }
 }

@@ -1,6 +1,7 @@
 use glam::Vec3;
 
 use super::super::path::{EmissionWeight, Path};
+use super::super::reuse::Stage;
 use crate::color::Rgb;
 use crate::math::Ray;
 use crate::sampling::PathSampler;
@@ -19,6 +20,8 @@ pub(super) struct PathState {
     pub(super) throughput: Rgb,
     /// Number of the path in its batch.
     pub(super) id: u32,
+    /// Where its light is added up: at `id`, or, once it leaves a shared vertex, behind all paths.
+    pub(super) tally: u32,
     /// Where the ray left, for [`EmissionWeight::Shared`].
     pub(super) from: Vec3,
     /// The side on which it did, likewise.
@@ -46,8 +49,8 @@ impl Paths {
         self.rays.is_empty()
     }
 
-    /// Adds `path`, number `id` of the batch.
-    pub(super) fn push(&mut self, id: u32, path: &Path) {
+    /// Adds `path`, number `id` of the batch, whose light is added up at `tally`.
+    pub(super) fn push(&mut self, (id, tally): (u32, u32), path: &Path) {
         let (from, normal, scatter_pdf) = match path.emission_weight {
             EmissionWeight::Full => (Vec3::ZERO, Vec3::ZERO, FULL),
             EmissionWeight::None => (Vec3::ZERO, Vec3::ZERO, NONE),
@@ -61,17 +64,18 @@ impl Paths {
         self.states.push(PathState {
             throughput: path.throughput,
             id,
+            tally,
             from,
             normal,
             scatter_pdf,
         });
     }
 
-    /// Path `index` after `bounce` bounces, with `radiance` gathered so far.
+    /// Path `index` after `bounce` bounces in `stage`, with `radiance` gathered so far.
     pub(super) fn path(
         &self,
         index: usize,
-        bounce: u32,
+        (bounce, stage): (u32, Stage),
         sampler: PathSampler,
         radiance: Rgb,
     ) -> Path {
@@ -94,6 +98,7 @@ impl Paths {
             radiance,
             bounce,
             emission_weight,
+            stage,
         }
     }
 }

@@ -6,17 +6,24 @@ use super::super::path::{MIN_SURVIVAL, SURVIVAL_OF_THROUGHPUT, TRAPPED_AFTER, TR
 use super::paths::{NONE, PathState};
 use super::shade::{Group, Shade};
 use crate::math::{Lanes, ROW, Ray, Vec3Lanes, offset_origin_lanes, set_bits};
-use crate::sampling::{Slot, cosine_hemisphere_lanes};
+use crate::sampling::{PathSamplerLanes, Slot, cosine_hemisphere_lanes};
 
 impl Shade<'_, '_> {
     /// Sends the paths of a group on, as [`super::PathTracer::scatter`] does from diffuse surfaces.
     #[inline(always)]
-    pub(super) fn scatter<L: Lanes>(&mut self, group: &Group<L>) {
+    ///
+    /// Those of `receivers` are sure to go on.
+    pub(super) fn scatter<L: Lanes>(&mut self, group: &Group<L>, receivers: u32) {
         let shares_emission = self.tracer.shares_diffuse_emission();
         if self.bounce + 1 >= self.tracer.settings.max_depth.0 && !shares_emission {
             return;
         }
-        let mut local = cosine_hemisphere_lanes(group.sampler.get_2d(self.bounce, Slot::Scatter));
+        let sampler = if self.bounce == 0 && self.reuse.is_on() {
+            PathSamplerLanes::new(self.samplers_from(group.first), 0, Slot::Scatter)
+        } else {
+            group.sampler
+        };
+        let mut local = cosine_hemisphere_lanes(sampler.get_2d(self.bounce, Slot::Scatter));
         let zero = L::splat(0.0);
         let size = local.z;
         local.z = L::select(group.wo_z.lt(zero), local.z.neg(), local.z);
@@ -36,10 +43,12 @@ impl Shade<'_, '_> {
             };
             let wanted = L::splat(SURVIVAL_OF_THROUGHPUT) * throughput.max_element();
             let survival = wanted.max(L::splat(MIN_SURVIVAL)).min(L::splat(most));
+            let sure = L::mask_of_bits(receivers);
+            let survival = L::select(sure, L::splat(1.0), survival);
             let at_risk = L::bits(alive & survival.lt(L::splat(1.0))) & group.lanes;
             // Whoever is sure to live needs no number, and is divided by 1.
             if at_risk != 0 {
-                let [u, _] = group.sampler.get_2d(self.bounce, Slot::Roulette);
+                let [u, _] = sampler.get_2d(self.bounce, Slot::Roulette);
                 alive = alive & u.lt(survival);
                 throughput = Vec3Lanes::new(
                     throughput.x / survival,
@@ -87,6 +96,7 @@ impl Shade<'_, '_> {
             self.next.states.push(PathState {
                 throughput: throughput.get(lane),
                 id: self.paths.states[group.first + lane].id,
+                tally: group.tallies[lane],
                 from: from.get(lane),
                 normal: side.get(lane),
                 scatter_pdf: pdf[lane],

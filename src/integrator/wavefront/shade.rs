@@ -1,13 +1,15 @@
 use std::ops::Range;
 
-use super::paths::Paths;
+use super::super::reuse::{Receiver, SharedVertex, Stage};
+use super::paths::{PathState, Paths};
 use super::queue::DirectQueues;
+use super::reuse::Reuse;
 use super::surface::{Found, SurfaceArrays, SurfaceLanes};
 use super::{Path, PathCounts, PathTracer, Vertex};
 use crate::color::Rgb;
 use crate::geometry::Hit;
-use crate::math::{Frame, FrameLanes, LaneKernel, Lanes, Vec3Array, Vec3Lanes, set_bits};
-use crate::sampling::{PathSampler, PathSamplerLanes};
+use crate::math::{Frame, FrameLanes, LaneKernel, Lanes, ROW, Vec3Array, Vec3Lanes, set_bits};
+use crate::sampling::{PathSampler, PathSamplerLanes, Slot};
 
 /// One bounce of a range of paths: emission is added to their radiance, rays of direct light to the
 /// queues, and the paths that go on to `next`.
@@ -19,6 +21,7 @@ pub(super) struct Shade<'a, 's> {
     pub(super) bounce: u32,
     pub(super) range: Range<usize>,
     pub(super) radiance: &'a mut [Rgb],
+    pub(super) reuse: &'a mut Reuse,
     pub(super) next: &'a mut Paths,
     pub(super) direct: &'a mut DirectQueues,
     pub(super) counts: &'a mut PathCounts,
@@ -30,11 +33,16 @@ pub(super) struct Group<L: Lanes> {
     pub(super) first: usize,
     /// A bit for each path on a plain surface.
     pub(super) lanes: u32,
+    /// Those whose geometric normal has taken the place of the shading normal.
+    mended: u32,
+    /// Where the light of each path is added up.
+    pub(super) tallies: [u32; ROW],
     pub(super) surface: SurfaceLanes<L>,
     pub(super) frame: FrameLanes<L>,
     /// Cosine between shading normal and the way that the path came.
     pub(super) wo_z: L,
     pub(super) throughput: Vec3Lanes<L>,
+    /// For the direct light, and, but at the first surface, for all else.
     pub(super) sampler: PathSamplerLanes<L>,
 }
 
@@ -42,7 +50,12 @@ impl<L: Lanes> Group<L> {
     /// As [`Vertex::lit_normal`].
     #[inline(always)]
     pub(super) fn lit_normal(&self) -> Vec3Lanes<L> {
-        let normal = self.surface.shading_normal;
+        self.lit_side(self.surface.shading_normal)
+    }
+
+    /// As [`Vertex::lit_side`].
+    #[inline(always)]
+    fn lit_side(&self, normal: Vec3Lanes<L>) -> Vec3Lanes<L> {
         Vec3Lanes::select(self.wo_z.lt(L::splat(0.0)), -normal, normal)
     }
 
@@ -73,9 +86,17 @@ impl LaneKernel for Shade<'_, '_> {
                 }
             }
             if found.lanes != 0 && bounces_on {
-                let group = self.group::<L>(first, &found);
+                let mut group = self.group::<L>(first, &found);
+                if self.reuse.is_on() {
+                    self.share(&mut group);
+                }
                 self.direct_light(&group);
-                self.scatter(&group);
+                let receivers = if self.reuse.is_on() {
+                    self.receive(&group)
+                } else {
+                    0
+                };
+                self.scatter(&group, receivers);
             }
         }
     }
@@ -86,73 +107,182 @@ impl<'s> Shade<'_, 's> {
     fn group<L: Lanes>(&self, first: usize, found: &Found) -> Group<L> {
         let mut surface = found.surfaces::<L>();
         let (mut directions, mut throughputs) = (Vec3Array::ZERO, Vec3Array::ZERO);
+        let mut tallies = [0; ROW];
         let rest = self.paths.rays[first..]
             .iter()
             .zip(&self.paths.states[first..]);
         for (lane, (ray, state)) in rest.enumerate().take(L::N) {
             directions.set(lane, ray.direction);
             throughputs.set(lane, state.throughput);
+            tallies[lane] = state.tally;
         }
-        let states = self.paths.states[first..].iter();
-        let samplers = states.map(|state| self.samplers[state.id as usize]);
+        let samplers = self.samplers_from(first);
         let wo = -Vec3Lanes::load(&directions);
         let agree = wo.dot(surface.geometric_normal) * wo.dot(surface.shading_normal);
-        surface.shading_normal = Vec3Lanes::select(
-            agree.le(L::splat(0.0)),
-            surface.geometric_normal,
-            surface.shading_normal,
-        );
+        let mended = agree.le(L::splat(0.0));
+        surface.shading_normal =
+            Vec3Lanes::select(mended, surface.geometric_normal, surface.shading_normal);
         Group {
             first,
             lanes: found.lanes,
+            mended: L::bits(mended),
+            tallies,
             frame: FrameLanes::from_normal(surface.shading_normal),
             wo_z: surface.shading_normal.dot(wo),
             surface,
             throughput: Vec3Lanes::load(&throughputs),
-            sampler: PathSamplerLanes::new(samplers),
+            sampler: PathSamplerLanes::new(samplers, self.bounce, Slot::LightPoint(0)),
         }
+    }
+
+    /// The samplers of the paths from `first` on.
+    #[inline(always)]
+    pub(super) fn samplers_from(&self, first: usize) -> impl Iterator<Item = PathSampler> {
+        let states = self.paths.states[first..].iter();
+        states.map(|state| self.samplers[state.id as usize])
     }
 
     /// The path `index` by the steps of the reference.
     fn shade_one(&mut self, index: usize) {
         let mut path = self.path(index);
-        let id = self.paths.states[index].id;
-        let vertex = self.tracer.arrive(&mut path, &self.hits[index]);
-        self.radiance[id as usize] = path.radiance;
+        let PathState { id, mut tally, .. } = self.paths.states[index];
+        let hit = &self.hits[index];
+        if hit.is_miss() && self.tracer.shares_sky(&path) {
+            let sky = SharedVertex::sky(path.ray.direction);
+            tally = self.share_one(id, &mut path, &sky);
+        }
+        let vertex = self.tracer.arrive(&mut path, hit);
+        self.radiance[tally as usize] = path.radiance;
         let Some(vertex) = vertex else {
             return;
         };
+        if self.tracer.shares(&path, &vertex) {
+            tally = self.share_one(id, &mut path, &SharedVertex::surface(&vertex));
+        }
         if self.tracer.wants_direct(&path, &vertex) {
             for number in 0..self.tracer.plan.len() as u32 {
-                self.direct_ray(id, &path, &vertex, number);
+                self.direct_ray(tally, &path, &vertex, number);
             }
         }
-        if self.tracer.scatter(&mut path, &vertex) {
-            self.next.push(id, &path);
+        if let Some(receiver) = self.tracer.receive(&mut path, &vertex) {
+            self.reuse.receive(id, &receiver);
         }
+        if self.tracer.scatter(&mut path, &vertex) {
+            self.next.push((id, tally), &path);
+        }
+    }
+
+    /// Shares `vertex` of path `id`; returns where its light is added up from now on.
+    fn share_one(&mut self, id: u32, path: &mut Path, vertex: &SharedVertex) -> u32 {
+        path.share();
+        self.reuse.share(id, vertex);
+        id + self.samplers.len() as u32
     }
 
     fn path(&self, index: usize) -> Path {
-        let id = self.paths.states[index].id as usize;
-        (self.paths).path(index, self.bounce, self.samplers[id], self.radiance[id])
+        let PathState { id, tally, .. } = self.paths.states[index];
+        (self.paths).path(
+            index,
+            (self.bounce, self.stage(id, tally)),
+            self.samplers[id as usize],
+            self.radiance[tally as usize],
+        )
     }
 
-    fn direct_ray(&mut self, id: u32, path: &Path, vertex: &Vertex<'_>, number: u32) {
+    fn stage(&self, id: u32, tally: u32) -> Stage {
+        if !self.reuse.is_on() {
+            return Stage::Alone;
+        }
+        if tally != id {
+            return Stage::Shared;
+        }
+        match self.reuse.receiver_bounce(id) {
+            None => Stage::Waiting,
+            Some(bounce) => Stage::Arriving { bounce: bounce + 1 },
+        }
+    }
+
+    /// [`Self::share_one`] of those of a group that come straight from their receivers.
+    fn share<L: Lanes>(&mut self, group: &mut Group<L>) {
+        let mut shared = 0;
+        for lane in set_bits(group.lanes & !group.mended) {
+            let PathState { id, tally, .. } = self.paths.states[group.first + lane];
+            if tally == id && self.reuse.receiver_bounce(id).map(|b| b + 1) == Some(self.bounce) {
+                shared |= 1 << lane;
+            }
+        }
+        if shared == 0 {
+            return;
+        }
+        let surface = &group.surface;
+        let (point, error) = (surface.point.store(), surface.error.store());
+        let geometric = group.lit_side(surface.geometric_normal).store();
+        let shading = group.lit_normal().store();
+        for lane in set_bits(shared) {
+            let id = self.paths.states[group.first + lane].id;
+            let vertex = SharedVertex {
+                place: point.get(lane),
+                error: error.get(lane),
+                geometric_normal: geometric.get(lane),
+                shading_normal: shading.get(lane),
+                is_infinite: false,
+            };
+            self.reuse.share(id, &vertex);
+            group.tallies[lane] = id + self.samplers.len() as u32;
+        }
+        let one = Vec3Lanes::splat(Rgb::ONE);
+        group.throughput = Vec3Lanes::select(L::mask_of_bits(shared), one, group.throughput);
+    }
+
+    /// Makes receivers of those of a group that wait for one; returns which.
+    fn receive<L: Lanes>(&mut self, group: &Group<L>) -> u32 {
+        let mut receivers = 0;
+        for lane in set_bits(group.lanes) {
+            let PathState { id, tally, .. } = self.paths.states[group.first + lane];
+            if self.stage(id, tally) == Stage::Waiting {
+                receivers |= 1 << lane;
+            }
+        }
+        if receivers == 0 {
+            return 0;
+        }
+        let surface = &group.surface;
+        let (point, error) = (surface.point.store(), surface.error.store());
+        let departure = surface.departure.store();
+        let geometric = group.lit_side(surface.geometric_normal).store();
+        let shading = group.lit_normal().store();
+        let factor = (group.throughput * surface.reflectance).store();
+        for lane in set_bits(receivers) {
+            let receiver = Receiver {
+                point: point.get(lane),
+                departure: departure.get(lane),
+                error: error.get(lane),
+                geometric_normal: geometric.get(lane),
+                shading_normal: shading.get(lane),
+                factor: factor.get(lane),
+                bounce: self.bounce,
+            };
+            let id = self.paths.states[group.first + lane].id;
+            self.reuse.receive(id, &receiver);
+        }
+        receivers
+    }
+
+    fn direct_ray(&mut self, tally: u32, path: &Path, vertex: &Vertex<'_>, number: u32) {
         match self.tracer.direct_ray(path, vertex, number) {
             None => self.counts.culled_shadow_rays += 1,
-            Some(ray) => self.direct.push(id, ray),
+            Some(ray) => self.direct.push(tally, ray),
         }
     }
 
     /// Direct light of the `lanes` of a group whose lights are not sampled in lanes.
-    pub(super) fn direct_light_one_by_one(
+    pub(super) fn direct_light_one_by_one<L: Lanes>(
         &mut self,
-        first: usize,
-        lanes: u32,
+        group: &Group<L>,
         surfaces: &SurfaceArrays,
     ) {
-        for lane in set_bits(lanes) {
-            let index = first + lane;
+        for lane in set_bits(group.lanes) {
+            let index = group.first + lane;
             let path = self.path(index);
             let primitive = self.hits[index].primitive;
             let surface = surfaces.get(lane, primitive);
@@ -162,10 +292,10 @@ impl<'s> Shade<'_, 's> {
                 frame,
                 wo: frame.to_local(-path.ray.direction),
                 bsdf: self.tracer.scene.bsdf(primitive),
+                is_mended: group.mended >> lane & 1 == 1,
             };
-            let id = self.paths.states[index].id;
             for number in 0..self.tracer.plan.len() as u32 {
-                self.direct_ray(id, &path, &vertex, number);
+                self.direct_ray(group.tallies[lane], &path, &vertex, number);
             }
         }
     }

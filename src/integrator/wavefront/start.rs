@@ -27,8 +27,8 @@ impl LaneKernel for Start<'_, '_> {
                 position[0][lane] = id.pixel[0] as f32;
                 position[1][lane] = id.pixel[1] as f32;
             }
-            let [x, y] =
-                PathSamplerLanes::<L>::new(samplers.iter().copied()).get_2d(0, Slot::Pixel);
+            let [x, y] = PathSamplerLanes::<L>::new(samplers.iter().copied(), 0, Slot::Pixel)
+                .get_2d(0, Slot::Pixel);
             let position = [L::load_row(&position[0]) + x, L::load_row(&position[1]) + y];
             let directions = camera.directions_lanes(position).store();
             for lane in 0..ids.len() {
@@ -36,6 +36,7 @@ impl LaneKernel for Start<'_, '_> {
                 self.paths.states.push(PathState {
                     throughput: Rgb::ONE,
                     id: (group * L::N + lane) as u32,
+                    tally: (group * L::N + lane) as u32,
                     from: Vec3::ZERO,
                     normal: Vec3::ZERO,
                     scatter_pdf: FULL,

@@ -1,6 +1,6 @@
 use super::{PathSampler, Points, Slot, dimension};
 use crate::math::{IntLanes, Lanes, ROW};
-use crate::sampling::digital_net::{PASCAL, index_in_pair};
+use crate::sampling::digital_net::{LOW, PASCAL, PLACES, index_in_pair};
 use crate::sampling::scramble::{LAINE_KARRAS, MIX_32};
 use crate::sampling::warp::LATTICE_CELL;
 
@@ -12,14 +12,16 @@ pub struct PathSamplerLanes<L: Lanes> {
 }
 
 impl<L: Lanes> PathSamplerLanes<L> {
-    /// Those of up to eight paths; of what is missing anything.
+    /// Those of up to eight paths, for `slot` at `bounce` and all slots that take part in sharing as it
+    /// does; of what is missing anything.
     #[inline(always)]
-    pub fn new(samplers: impl Iterator<Item = PathSampler>) -> Self {
+    pub fn new(samplers: impl Iterator<Item = PathSampler>, bounce: u32, slot: Slot) -> Self {
         let (mut x, mut y, mut index) = ([0; ROW], [0; ROW], [0; ROW]);
         for (lane, sampler) in samplers.enumerate().take(L::N) {
-            x[lane] = sampler.key[0];
-            y[lane] = sampler.key[1];
-            index[lane] = sampler.index;
+            let sequence = sampler.sequence(bounce, slot);
+            x[lane] = sequence.key[0];
+            y[lane] = sequence.key[1];
+            index[lane] = sequence.index;
         }
         Self {
             key: [L::Ints::load(&x), L::Ints::load(&y)],
@@ -52,16 +54,19 @@ impl<L: Lanes> PathSamplerLanes<L> {
         ]
     }
 
-    /// Neighbours usually have the same number, so that one look is enough.
+    /// Neighbours usually have the same number but for the place in a cluster, so that one look is
+    /// enough.
     #[inline(always)]
     fn index_in_pair(&self, pair: usize) -> L::Ints {
-        let mut last = (self.index[0], index_in_pair(pair, self.index[0]));
-        let mut indices = [last.1; ROW];
+        let first = self.index[0] & !PLACES;
+        let mut last = (first, index_in_pair(pair, first));
+        let mut indices = [0; ROW];
         for (to, &index) in indices.iter_mut().zip(&self.index).take(L::N) {
-            if index != last.0 {
-                last = (index, index_in_pair(pair, index));
+            let rest = index & !PLACES;
+            if rest != last.0 {
+                last = (rest, index_in_pair(pair, rest));
             }
-            *to = last.1;
+            *to = last.1 ^ LOW[pair][(index & PLACES) as usize];
         }
         L::Ints::load(&indices)
     }
@@ -99,6 +104,7 @@ fn unit<L: Lanes>(digits: L::Ints) -> L {
 
 #[cfg(test)]
 mod tests {
+    use super::super::Member;
     use super::*;
     use crate::math::{Isa, LaneKernel, run_lanes};
 
@@ -108,7 +114,7 @@ mod tests {
         type Answer = [[f32; ROW]; 2];
 
         fn run<L: Lanes>(self) -> Self::Answer {
-            let lanes = PathSamplerLanes::<L>::new(self.0.iter().copied());
+            let lanes = PathSamplerLanes::<L>::new(self.0.iter().copied(), self.1, self.2);
             lanes.get_2d(self.1, self.2).map(L::to_array)
         }
     }
@@ -116,7 +122,15 @@ mod tests {
     #[test]
     fn lanes_draw_what_single_paths_draw() {
         let samplers: Vec<PathSampler> = (0..800_u32)
-            .map(|i| PathSampler::replicated(9, [i, i / 7], i * i / 3, 1 + i % 3))
+            .map(|i| {
+                let size = 1 << (i / 200);
+                let member = Member {
+                    first: [i / size, 0],
+                    number: i % size,
+                    size,
+                };
+                PathSampler::in_cluster(9, ([i, i / 7], i * i / 3), 1 + i % 3, member)
+            })
             .collect();
         let slots = [
             Slot::Pixel,

@@ -221,3 +221,52 @@ fn numbers_stay_below_one_and_are_uniform() {
     }
     assert_eq!(unit(u32::MAX), crate::sampling::ONE_MINUS_EPSILON);
 }
+
+/// The paths of a cluster together have one point in each elementary interval of the slots that they
+/// share, at every sample and after all of the first 2ᵏ; their own slots differ.
+#[test]
+fn the_paths_of_a_cluster_draw_from_one_net() {
+    for size in [2, 4, 16] {
+        let samplers: Vec<PathSampler> = (0..8 * size)
+            .map(|i| {
+                let (sample, number) = (i / size, i % size);
+                let member = Member {
+                    first: [6, 2],
+                    number,
+                    size,
+                };
+                PathSampler::in_cluster(5, ([6 + number, 2], sample), 1, member)
+            })
+            .collect();
+        for (bounce, slot) in [
+            (0, Slot::Scatter),
+            (1, Slot::LightPoint(0)),
+            (4, Slot::Lobe),
+        ] {
+            for samples in [1, 2, 8] {
+                let points: Vec<_> = (samplers[..(samples * size) as usize].iter())
+                    .map(|sampler| sampler.get_2d(bounce, slot))
+                    .collect();
+                let levels = (samples * size).ilog2();
+                for columns in 0..=levels {
+                    let cells = [1 << columns, 1 << (levels - columns)];
+                    let mut seen = std::collections::HashSet::new();
+                    for u in &points {
+                        let cell = [
+                            (u.x * cells[0] as f32) as u32,
+                            (u.y * cells[1] as f32) as u32,
+                        ];
+                        assert!(
+                            seen.insert(cell),
+                            "{size}, {slot:?}, {samples}: {cell:?} twice"
+                        );
+                    }
+                }
+            }
+        }
+        for (sampler, other) in samplers.iter().zip(&samplers[1..]) {
+            let own = |s: &PathSampler| s.get_2d(0, Slot::LightPoint(0));
+            assert_ne!(own(sampler), own(other));
+        }
+    }
+}

@@ -152,6 +152,7 @@ impl Picture {
     ) -> Option<Preview> {
         let settings = PathSettings {
             light_samples: 1,
+            reuse: 1,
             ..PathSettings::from(&self.job.settings)
         };
         Preview::render(

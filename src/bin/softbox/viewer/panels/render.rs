@@ -2,7 +2,9 @@
 
 use eframe::egui::{self, DragValue, Slider, Ui};
 use softbox::bvh::{BvhKind, BvhQuality, BvhSettings};
-use softbox::settings::{Adaptive, AdaptiveRule, IntegratorKind, MaxDepth, Mode, RenderSettings};
+use softbox::settings::{
+    Adaptive, AdaptiveRule, IntegratorKind, MaxDepth, Mode, RenderSettings, Reuse,
+};
 
 use super::{choice, optional, row, section};
 use crate::viewer::document::Resolution;
@@ -30,6 +32,15 @@ pub(in crate::viewer) fn show(ui: &mut Ui, settings: &mut RenderSettings) {
             Slider::new(&mut settings.light_samples, 1..=256).logarithmic(true),
         );
         depth(ui, &mut settings.max_depth);
+        let help = "Pixels that share the indirect light they find, in mode best. Not biased; \
+                    the noise of pixels that share is alike.";
+        choice(
+            ui,
+            ("Reuse", help),
+            &mut settings.reuse,
+            &Reuse::ALL,
+            Reuse::name,
+        );
         row(
             ui,
             "Only last bounce",

@@ -1,0 +1,172 @@
+//! What the paths of a batch lend to and take from each other ([`super::super::reuse`]), in lanes:
+//! lanes run over clusters, rows of them over the members of clusters.
+
+mod connect;
+mod rows;
+
+use super::super::reuse::{MAX_CLUSTER, Receiver, SharedVertex};
+use super::super::{PathCounts, PathTracer};
+use crate::color::Rgb;
+use crate::math::{LaneKernel, Lanes, ROW, Ray, run_lanes};
+use connect::{Reach, TakeIn};
+use rows::{ReceiverRow, SharedRow};
+
+/// Connecting rays that are traced together, about.
+const MOST_CONNECTING: usize = 4096;
+
+/// No receiver, as a number of bounces.
+const NONE: u32 = u32::MAX;
+
+/// Receivers and shared vertices of all paths of a batch, and the rays between them.
+#[derive(Debug, Default)]
+pub(super) struct Reuse {
+    /// Paths in a cluster.
+    members: usize,
+    /// Clusters in a row: the lanes of the instruction set.
+    width: usize,
+    /// Rows of clusters.
+    rows: usize,
+    /// By number of the path: bounces before its receiver, or [`NONE`].
+    bounces: Vec<u32>,
+    /// Of member m in row r at m · rows + r.
+    receivers: Vec<ReceiverRow>,
+    shared: Vec<SharedRow>,
+    /// π times densities, of a row of clusters: of receiver j for the shared vertex of member k, at
+    /// (row · members + k) · members + j.
+    reach: Vec<[f32; ROW]>,
+    rays: Vec<Ray>,
+    /// Which number of `reach` each ray is for: row, lane.
+    asked: Vec<(u32, u32)>,
+    occluded: Vec<bool>,
+}
+
+/// The lanes of an instruction set.
+struct Width;
+
+impl LaneKernel for Width {
+    type Answer = usize;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> usize {
+        L::N
+    }
+}
+
+impl Reuse {
+    /// Forgets everything; `paths` are in clusters as `tracer` says, one after the other.
+    ///
+    /// # Panics
+    /// When a cluster lacks paths.
+    pub(super) fn begin(&mut self, tracer: &PathTracer<'_>, paths: usize) {
+        self.members = tracer.cluster_size();
+        if self.members == 1 {
+            return;
+        }
+        assert!(
+            paths.is_multiple_of(self.members),
+            "a cluster of {} has {} paths too many",
+            self.members,
+            paths % self.members
+        );
+        self.width = run_lanes(tracer.scene.aggregate().isa(), Width);
+        self.rows = (paths / self.members).div_ceil(self.width);
+        self.bounces.clear();
+        self.bounces.resize(paths, NONE);
+        let rows = self.members * self.rows;
+        self.receivers.resize(rows, ReceiverRow::NONE);
+        self.shared.resize(rows, SharedRow::NONE);
+        for (receivers, shared) in self.receivers.iter_mut().zip(&mut self.shared) {
+            receivers.clear();
+            shared.clear();
+        }
+    }
+
+    /// True when paths share their light.
+    pub(super) fn is_on(&self) -> bool {
+        self.members > 1
+    }
+
+    /// Bounces before the receiver of path `id`; `None` without one.
+    pub(super) fn receiver_bounce(&self, id: u32) -> Option<u32> {
+        let bounce = self.bounces[id as usize];
+        (bounce != NONE).then_some(bounce)
+    }
+
+    pub(super) fn receive(&mut self, id: u32, receiver: &Receiver) {
+        self.bounces[id as usize] = receiver.bounce;
+        let (row, lane) = self.place(id);
+        self.receivers[row].set(lane, receiver);
+    }
+
+    pub(super) fn share(&mut self, id: u32, vertex: &SharedVertex) {
+        let bounce = self.bounces[id as usize];
+        let (row, lane) = self.place(id);
+        self.shared[row].set(lane, vertex, bounce);
+    }
+
+    /// Row and lane of path `id`.
+    #[inline(always)]
+    fn place(&self, id: u32) -> (usize, usize) {
+        let (members, width) = (self.members, self.width);
+        let (cluster, member) = (
+            id as usize >> members.trailing_zeros(),
+            id as usize & (members - 1),
+        );
+        let row = member * self.rows + (cluster >> width.trailing_zeros());
+        (row, cluster & (width - 1))
+    }
+
+    /// Adds what each path takes in to its radiance. The first half of `radiance` belongs to the
+    /// paths; the second is what leaves their shared vertices.
+    pub(super) fn exchange(
+        &mut self,
+        tracer: &PathTracer<'_>,
+        radiance: &mut [Rgb],
+        counts: &mut PathCounts,
+    ) {
+        if !self.is_on() {
+            return;
+        }
+        let isa = tracer.scene.aggregate().isa();
+        let (own, lent) = radiance.split_at_mut(radiance.len() / 2);
+        let rays = self.width * self.members * (self.members - 1);
+        let part = (MOST_CONNECTING / rays).max(1);
+        for first in (0..self.rows).step_by(part) {
+            let rows = first..(first + part).min(self.rows);
+            self.rays.clear();
+            self.asked.clear();
+            self.reach
+                .resize(rows.len() * self.members * self.members, [0.0; ROW]);
+            let reach = Reach {
+                reuse: self,
+                lent,
+                rows: rows.clone(),
+            };
+            run_lanes(isa, reach);
+            self.trace(tracer, counts);
+            let take_in = TakeIn {
+                reuse: self,
+                lent,
+                own,
+                rows,
+            };
+            run_lanes(isa, take_in);
+        }
+    }
+
+    /// Takes the reach of receivers that do not see the shared vertex.
+    fn trace(&mut self, tracer: &PathTracer<'_>, counts: &mut PathCounts) {
+        self.occluded.clear();
+        self.occluded.resize(self.rays.len(), false);
+        let aggregate = tracer.scene.aggregate();
+        aggregate.any_hit(&self.rays, &mut self.occluded, &mut counts.trace);
+        counts.shadow_rays += self.rays.len() as u64;
+        for (&(row, lane), &occluded) in self.asked.iter().zip(&self.occluded) {
+            if occluded {
+                self.reach[row as usize][lane as usize] = 0.0;
+            }
+        }
+    }
+}
+
+const _: () = assert!(MAX_CLUSTER.is_power_of_two());
