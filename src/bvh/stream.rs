@@ -113,6 +113,19 @@ impl<L: Leaves, F: FnMut(usize, Option<&L::Query>), const ANY: bool, const STACK
             query: self.leaves.query(ray, &slab),
         }
     }
+
+    /// Puts ray `number` at the root. Field by field: what was written in pieces and is read as a
+    /// whole at once makes the processor wait.
+    #[inline(always)]
+    fn renew(&self, lane: &mut Lane<L::Query>, number: usize) {
+        let ray = &self.rays[number];
+        lane.slab = SlabRay::prepare(ray);
+        lane.limit = lane.slab.t_max();
+        lane.at = 0;
+        lane.top = BOTTOM as u32;
+        lane.ray = number as u32;
+        lane.query = self.leaves.query(ray, &lane.slab);
+    }
 }
 
 impl<L: Leaves, F: FnMut(usize, Option<&L::Query>), const ANY: bool, const STACK: usize> Kernel
@@ -181,7 +194,7 @@ impl<L: Leaves, F: FnMut(usize, Option<&L::Query>), const ANY: bool, const STACK
                 let lane = &mut lanes[number % LANES];
                 (self.answer)(lane.ray as usize, Some(&lane.query));
                 if let Some(ray) = self.next(&mut next) {
-                    *lane = self.lane(ray);
+                    self.renew(lane, ray);
                     at_node |= 1 << number;
                 }
             }
