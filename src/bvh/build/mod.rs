@@ -129,3 +129,49 @@ fn build(
     }
     Some(Some(whole))
 }
+
+#[cfg(test)]
+mod tests {
+    use std::ops::ControlFlow;
+    use std::time::Duration;
+
+    use glam::Vec3;
+
+    use super::*;
+    use crate::bvh::BvhStats;
+
+    /// Boxes around places that come closer and closer to a point, each as large as its distance.
+    fn ever_smaller(count: u16) -> Vec<Aabb> {
+        let size = |i: u16| 10.0_f32.powf(f32::from(i) * 34.0 / f32::from(count) - 17.0);
+        let boxes = (0..count).map(|i| Aabb::from_points([Vec3::ZERO, Vec3::splat(2.0 * size(i))]));
+        boxes.collect()
+    }
+
+    fn settings(quality: BvhQuality) -> BvhSettings {
+        BvhSettings {
+            quality,
+            leaf_size: 1,
+            ..BvhSettings::default()
+        }
+    }
+
+    #[test]
+    fn high_quality_gives_way_to_standard_where_it_would_be_too_deep() {
+        let boxes = ever_smaller(5000);
+        let refs = (0..).zip(&boxes).map(|(i, b)| PrimitiveRef::new(i, b));
+        let go_on = |_| ControlFlow::Continue(());
+        let high = build(refs.collect(), &settings(BvhQuality::High), &go_on);
+        let Chunk { nodes, blocks } = high.expect("not stopped").expect("no 500 nodes deep");
+        let deep = Bvh::new(nodes, blocks.len(), 0, Duration::ZERO);
+        assert!(deep.wide_depth() > MOST_WIDE_DEPTH);
+        let [high, standard] = [BvhQuality::High, BvhQuality::Standard]
+            .map(|quality| Bvh::build(&boxes, &settings(quality)));
+        assert!(high.0.wide_depth() <= MOST_WIDE_DEPTH);
+        assert_eq!(high.1, standard.1);
+        let shape = |(bvh, _): &(Bvh, LeafBlocks)| BvhStats {
+            build_seconds: 0.0,
+            ..bvh.stats()
+        };
+        assert_eq!(shape(&high), shape(&standard));
+    }
+}
