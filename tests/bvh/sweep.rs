@@ -130,11 +130,18 @@ fn g7_sweeps_agree_with_brute_force() {
         (Vec3::new(-0.4, 0.1, -0.3), 0.3),
     ];
     let nested = [(Vec3::ZERO, 0.8), (Vec3::ZERO, 0.5), (Vec3::X * 0.3, 0.5)];
+    let many: Vec<_> = (0..16_u8)
+        .map(|i| {
+            let [x, y, z] = [1, 4, 16].map(|unit| f32::from(i / unit % 4) * 0.4 - 0.6);
+            (Vec3::new(x, y, z), 0.25)
+        })
+        .collect();
     let one = scenes::random_soup(1, 1.5, 3);
     for (name, shapes, share) in [
         ("cube", scenes::cube(), 0.4),
         ("room", room(), 0.4),
         ("room with spheres", with_spheres(room(), &balls), 0.4),
+        ("room full of spheres", with_spheres(room(), &many), 0.4),
         (
             "spheres in spheres",
             with_spheres(scenes::cube(), &nested),

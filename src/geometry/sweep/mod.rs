@@ -29,8 +29,9 @@ const MOST_TRIANGLES: usize = 64;
 /// The same for closest hits: at 32 triangles 1.15 times, at 64 slower.
 const MOST_FOR_CLOSEST: usize = 40;
 
-/// The same for spheres, each of which is tried by itself.
-const MOST_SPHERES: usize = 4;
+/// The same for spheres, each of which is tried by itself. Measured in a room of ten triangles: 3.4
+/// times as fast as the tree with 12 spheres, 2.3 times (any hit: 2.6) with 16; more were not tried.
+const MOST_SPHERES: usize = 16;
 
 /// Vertices that a packet has room for; their numbers are bytes.
 const VERTICES: usize = 256;
@@ -42,7 +43,8 @@ const REACH: f32 = 1e5;
 /// Least radius of a sphere: its discriminants keep their signs in single precision.
 const SMALLEST: f32 = 1e-6;
 
-/// Batches of fewer rays are left to the tree: too few would share a packet.
+/// Batches of fewer rays are left to the tree: too few would share a packet. Measured: with rays in all
+/// directions 0.75 times as fast at 32 rays, 0.93 (any hit: 1.15) at 64, 1.4 at 128.
 const FEWEST_RAYS: usize = 64;
 
 /// The primitives of a small scene, prepared for sweeps.
