@@ -14,7 +14,7 @@
 //!  7  session   io     session never reads files; io never renders
 //!  6  integrator       one path
 //!  5  scene            description → runtime
-//!  4  light  display  settings
+//!  4  light  guide  display  settings
 //!  3  geometry  bsdf  camera  film  study
 //!  2  bvh  image
 //!  1  sampling
@@ -50,6 +50,8 @@
 //! - The paths of a cluster of up to 16 pixels ([`film::Cluster`]) share the light that leaves the
 //!   second diffuse surface of each, weighted so that the mean stays; what they draw for it are points
 //!   of one net ([`sampling::PathSampler::in_cluster`]). Only in mode best.
+//! - Diffuse vertices that see an area light through mirrors or glass aim some of their rays at it: light
+//!   paths, traced when the scene is prepared, have told where ([`guide`]).
 //! - Roulette lets every path of at least a quarter of the full throughput live.
 //!
 //! # Invariants
@@ -101,6 +103,7 @@ pub mod color;
 pub mod display;
 pub mod film;
 pub mod geometry;
+pub mod guide;
 pub mod image;
 pub mod integrator;
 pub mod io;

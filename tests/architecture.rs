@@ -10,7 +10,7 @@ const FLOORS: [&[&str]; 8] = [
     &["sampling"],
     &["bvh", "image"],
     &["geometry", "bsdf", "camera", "film", "study"],
-    &["light", "display", "settings"],
+    &["light", "guide", "display", "settings"],
     &["scene"],
     &["integrator"],
     &["session", "io"],

@@ -8,6 +8,7 @@ mod initial_camera;
 mod instancing;
 mod interaction;
 mod lights;
+mod photons;
 mod placed_mesh;
 mod plain;
 mod prepare;
@@ -16,6 +17,7 @@ mod prepared;
 mod procedural;
 mod shading_normals;
 mod shared_mesh;
+mod specular;
 
 pub use builder::SceneBuilder;
 pub use description::{

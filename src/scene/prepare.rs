@@ -8,6 +8,7 @@ use glam::{DVec3, Vec3};
 use super::emitters::{Emitters, EmittingRectangle, SurfaceEmission, emitters};
 use super::instancing::{Instancing, shared};
 use super::lights::{LightTable, light_nodes};
+use super::photons::guide;
 use super::placed_mesh::PlacedMesh;
 use super::plain::plain_reflectances;
 use super::prepare_cache::PrepareCache;
@@ -112,10 +113,13 @@ pub fn prepare_with(
         course_compatible: settings.course_compatible,
         notes: emitters.notes,
     };
-    Some(PreparedScene {
+    let mut prepared = PreparedScene {
         aggregate,
+        guide: None,
         tables: Arc::new(tables),
-    })
+    };
+    prepared.guide = guide(&prepared, progress).continue_value()?.map(Arc::new);
+    Some(prepared)
 }
 
 /// Places everything, and builds what is shared.

@@ -9,6 +9,7 @@ use super::{PlainSurfaces, SurfaceInteraction};
 use crate::bsdf::Bsdf;
 use crate::color::Rgb;
 use crate::geometry::{Aggregate, Instance, InstanceStats, Shapes};
+use crate::guide::Guide;
 use crate::light::{Light, LightHit, LightSampleContext, LightSampler};
 use crate::math::Normalization;
 
@@ -37,6 +38,8 @@ pub(super) struct PreparedMaterial {
 #[derive(Debug)]
 pub struct PreparedScene {
     pub(super) aggregate: Aggregate,
+    /// Depends on surfaces, materials and lights, not on the hierarchy.
+    pub(super) guide: Option<Arc<Guide>>,
     /// Shared with the same scene under another hierarchy.
     pub(super) tables: Arc<Tables>,
 }
@@ -78,11 +81,17 @@ impl PreparedScene {
         &self.aggregate
     }
 
+    /// Where lights are seen through mirrors and glass; `None` where there is nothing of the kind.
+    pub fn guide(&self) -> Option<&Guide> {
+        self.guide.as_deref()
+    }
+
     /// The same scene under a hierarchy that costs rays less, see [`Aggregate::refined`]. Shapes and
     /// tables are shared, and every ray has the same hits.
     pub fn refined(&self, progress: &(dyn Fn(f32) -> ControlFlow<()> + Sync)) -> Option<Self> {
         Some(Self {
             aggregate: self.aggregate.refined(progress)?,
+            guide: self.guide.clone(),
             tables: Arc::clone(&self.tables),
         })
     }

@@ -4,6 +4,7 @@
 mod bsdfs;
 mod directions;
 mod gamma;
+mod guide;
 mod harness;
 mod lights;
 mod measure;
@@ -11,12 +12,13 @@ mod warps;
 
 use harness::Case;
 
-fn all_groups() -> [fn() -> Vec<Case>; 4] {
+fn all_groups() -> [fn() -> Vec<Case>; 5] {
     [
         warps::cases,
         bsdfs::cases,
         lights::surface_cases,
         lights::environment_cases,
+        guide::cases,
     ]
 }
 
@@ -49,6 +51,11 @@ fn light_surfaces_match_their_densities() {
 #[test]
 fn environments_match_their_densities() {
     check(lights::environment_cases);
+}
+
+#[test]
+fn guided_rays_match_their_densities() {
+    check(guide::cases);
 }
 
 /// The test must be able to fail: densities that are wrong in the ways that programs get them wrong.
