@@ -225,7 +225,8 @@ impl PathTracer<'_> {
         }
         if shares && !sample.is_delta {
             let n = self.settings.light_samples as f32;
-            contribution *= power_heuristic(n * sample.pdf, vertex.bsdf.pdf(vertex.wo, local));
+            let scatter_pdf = self.scatter_pdf(path.bounce, vertex, (sample.wi, local));
+            contribution *= power_heuristic(n * sample.pdf, scatter_pdf);
         }
         let origin = vertex.origin(sample.wi);
         let ray = if sample.distance.is_finite() {

@@ -11,6 +11,7 @@ mod counts;
 mod direct;
 mod double;
 mod first_hit;
+mod guided;
 mod path;
 mod reference;
 mod reuse;

@@ -1,11 +1,13 @@
 use glam::{Vec2, Vec3};
 
 use super::DirectPlan;
+use super::guided::Scattered;
 use super::reuse::{self, Stage};
 use crate::bsdf::{Bsdf, Lobe};
 use crate::camera::RayCamera;
 use crate::color::Rgb;
 use crate::geometry::Hit;
+use crate::guide::Guide;
 use crate::light::ParallelogramLight;
 use crate::math::{Frame, Ray, offset_origin};
 use crate::sampling::{Member, PathSampler, Slot, power_heuristic, uniform_disk};
@@ -156,6 +158,8 @@ pub struct PathTracer<'a> {
     light_samples_suffice: bool,
     /// Paths in a cluster.
     pub(super) cluster_size: usize,
+    /// Where diffuse vertices aim some of their rays.
+    pub(super) guide: Option<&'a Guide>,
     /// The light that all light samples go to, if that is a parallelogram, and their weight.
     pub(super) only_parallelogram: Option<(ParallelogramLight<'a>, f32)>,
 }
@@ -173,6 +177,7 @@ impl<'a> PathTracer<'a> {
             settings,
             plan,
             only_parallelogram,
+            guide: scene.guide().filter(|_| settings.mode == Mode::Best),
             light_samples_suffice: scene.light_samples_suffice(),
             cluster_size: reuse::cluster_size(scene, &settings),
         }
@@ -289,18 +294,16 @@ impl<'a> PathTracer<'a> {
         if is_last && !vertex.bsdf.is_delta() && !self.shares_emission(vertex.bsdf) {
             return false;
         }
-        let u_lobe = sampler.get_1d(bounce, Slot::Lobe);
-        let Some(sample) =
-            vertex
-                .bsdf
-                .sample(vertex.wo, u_lobe, sampler.get_2d(bounce, Slot::Scatter))
-        else {
+        let Some(scattered) = self.scattered((sampler, bounce), vertex) else {
             return false;
         };
-        let direction = vertex.frame.to_world(sample.wi).normalize_or_zero();
+        let Scattered {
+            sample, direction, ..
+        } = scattered;
         if direction.dot(vertex.surface.geometric_normal) * sample.wi.z <= 0.0 {
             return false;
         }
+        let kept = self.kept(path.throughput, &scattered);
         path.throughput *= sample.weight();
         path.emission_weight = match sample.lobe {
             Lobe::Delta => EmissionWeight::Full,
@@ -313,10 +316,16 @@ impl<'a> PathTracer<'a> {
         };
         path.ray = Ray::new(vertex.origin(direction), direction);
         path.bounce += 1;
+        let is_arriving = path.is_arriving();
+        if let Stage::Arriving { scale, .. } = &mut path.stage
+            && is_arriving
+        {
+            *scale = scattered.material_pdf / sample.pdf;
+        }
         // The first continuation is always taken, as in the course, and that from a receiver.
-        let is_sure = path.bounce < 2 || path.is_arriving();
+        let is_sure = path.bounce < 2 || is_arriving;
         path.throughput.max_element() > 0.0
-            && (is_sure || survives(path, sampler.get_1d(bounce, Slot::Roulette)))
+            && (is_sure || survives(path, kept, sampler.get_1d(bounce, Slot::Roulette)))
     }
 }
 
@@ -337,14 +346,15 @@ fn vertex(mut surface: SurfaceInteraction, wo: Vec3, bsdf: &Bsdf) -> Vertex<'_> 
     }
 }
 
-/// Russian roulette by throughput; survivors are divided by their probability, so the mean stays.
-fn survives(path: &mut Path, u: f32) -> bool {
+/// Russian roulette by `kept`, the throughput but for the aim of guided rays; survivors are divided by
+/// their probability, so the mean stays.
+fn survives(path: &mut Path, kept: f32, u: f32) -> bool {
     let most = if path.bounce < TRAPPED_AFTER {
         1.0
     } else {
         TRAPPED_SURVIVAL
     };
-    let wanted = SURVIVAL_OF_THROUGHPUT * path.throughput.max_element();
+    let wanted = SURVIVAL_OF_THROUGHPUT * kept;
     let survival = wanted.clamp(MIN_SURVIVAL, most);
     if u >= survival {
         return false;

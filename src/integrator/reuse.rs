@@ -10,7 +10,9 @@
 //! shared vertex, Vⱼₖ visibility and qⱼₖ the density per area, times π, with which receiver j scatters
 //! rays to the shared vertex of path k. This is multiple importance sampling by the balance heuristic:
 //! every path of the cluster could have made every shared vertex that it sees, so the mean is that of
-//! paths alone. A point of an even sky is shared likewise, with densities per solid angle.
+//! paths alone. Where part of the rays is aimed, q stays that of the material, and Lₖ is scaled by it
+//! over the density of the ray that made the vertex.
+//! A point of an even sky is shared likewise, with densities per solid angle.
 //!
 //! Bekaert, Sbert, Halton 2002, "Accelerating Path Tracing by Re-Using Paths"; Veach 1997, section
 //! 9.2.2. Paths that have come to their receivers over mirrors share among those of as many bounces.
@@ -36,14 +38,15 @@ const FEW_LIGHTS: usize = 8;
 const FOR_MANY_LIGHTS: usize = 4;
 
 /// How far a path has come in sharing its light.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Stage {
     /// It takes no part.
     Alone,
     /// It has met no receiver yet.
     Waiting,
-    /// It has left its receiver; what it meets after so many bounces may be shared.
-    Arriving { bounce: u32 },
+    /// It has left its receiver; what it meets after so many bounces may be shared. `scale` is the
+    /// density that the receiver's material has for the ray over that of the ray, part of which is aimed.
+    Arriving { bounce: u32, scale: f32 },
     /// It carries the light that its shared vertex will send.
     Shared,
 }
@@ -210,6 +213,7 @@ impl PathTracer<'_> {
         }
         path.stage = Stage::Arriving {
             bounce: path.bounce + 1,
+            scale: 1.0,
         };
         Some(Receiver::new(path, vertex, diffuse.reflectance))
     }
@@ -218,16 +222,15 @@ impl PathTracer<'_> {
 impl Path {
     /// True when the path comes straight from its receiver.
     pub(super) fn is_arriving(&self) -> bool {
-        self.stage
-            == Stage::Arriving {
-                bounce: self.bounce,
-            }
+        matches!(self.stage, Stage::Arriving { bounce, .. } if bounce == self.bounce)
     }
 
     /// From here on the path gathers what leaves its shared vertex; returns what it has so far.
     pub(super) fn share(&mut self) -> Rgb {
+        if let Stage::Arriving { scale, .. } = self.stage {
+            self.throughput = Rgb::splat(scale);
+        }
         self.stage = Stage::Shared;
-        self.throughput = Rgb::ONE;
         std::mem::take(&mut self.radiance)
     }
 }

@@ -117,6 +117,13 @@ fn every_material_on_spheres_and_smooth_meshes() {
 }
 
 #[test]
+fn lights_through_mirrors_and_glass() {
+    for with_lamp in [false, true] {
+        check(&scenes::caustics(with_lamp), &all_settings());
+    }
+}
+
+#[test]
 fn instances() {
     for instancing in [Instancing::Never, Instancing::Always] {
         check_with(&scenes::smooth_copies(), instancing, &all_settings());

@@ -254,6 +254,25 @@ fn place(scene: &mut Scene, geometry: usize, at: DMat4, material: usize) {
     });
 }
 
+/// Mirror and glass under one light, which light samples suffice for, or under two of which one is a
+/// ball, which are shared with the scattered ray.
+pub(crate) fn caustics(with_lamp: bool) -> View {
+    let mut builder = cornell_box("caustics");
+    let reflectance = Rgb::new(1.0, 0.9, 0.8);
+    let mirror = builder.surface("mirror", Surface::Mirror { reflectance });
+    let glass = builder.surface("glass", glass());
+    let grey = builder.diffuse("grey", Rgb::splat(0.6));
+    builder.sphere("glass", RIGHT, 0.3, glass);
+    builder.sphere("grey", DVec3::new(0.1, 0.2, -0.4), 0.2, grey);
+    let (u, v) = (DVec3::new(0.0, 0.7, 0.1), DVec3::new(0.1, 0.0, 0.8));
+    builder.quad("mirror", DVec3::new(-0.9, 0.2, -0.5), u, v, mirror);
+    if with_lamp {
+        let lamp = builder.emitter("lamp", Rgb::new(3.0, 6.0, 9.0));
+        builder.sphere("lamp", LEFT, 0.1, lamp);
+    }
+    into_the_box(builder)
+}
+
 /// Every material next to plain ones, on spheres and on smooth meshes.
 pub(crate) fn materials() -> View {
     let mut builder = cornell_box("materials");

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::path::{Path, Vertex};
 use super::surface::{Surface, off_surface};
 use super::trace::{Ray, closest, is_occluded};
-use super::{bsdf, environment, light, light_choice, warp};
+use super::{bsdf, environment, guided, light, light_choice, warp};
 use crate::integrator::PathTracer;
 use crate::integrator::direct::{DirectSample, light_numbers};
 use crate::light::Light;
@@ -26,11 +26,11 @@ pub(super) fn direct_light(tracer: &PathTracer<'_>, path: &Path, vertex: &Vertex
             let (_, (u_part, u)) = light_numbers(path.sampler, path.bounce, number);
             let light = scene.light(light);
             let sample = light::sample(light, scene.shapes(), from, u_part, u);
-            lit_by(tracer, vertex, sample) * f64::from(weight)
+            lit_by(tracer, path, vertex, sample) * f64::from(weight)
         }
         DirectSample::AnyLight { weight } => {
             let sample = any_light(tracer, path, vertex, number);
-            lit_by(tracer, vertex, sample) * f64::from(weight)
+            lit_by(tracer, path, vertex, sample) * f64::from(weight)
         }
         DirectSample::Hemisphere { weight } => {
             from_hemisphere(tracer, path, vertex, number) * f64::from(weight)
@@ -60,6 +60,7 @@ fn any_light(
 /// What `sample` sends through the vertex.
 fn lit_by(
     tracer: &PathTracer<'_>,
+    path: &Path,
     vertex: &Vertex<'_>,
     sample: Option<light::LightSample>,
 ) -> DVec3 {
@@ -75,6 +76,10 @@ fn lit_by(
     let mut light = value * wi.z.abs() * sample.radiance / sample.pdf;
     if shares && !sample.is_delta {
         let n = f64::from(tracer.settings.light_samples);
+        let scatter_pdf = match guided::lobes_at(tracer, path.bounce, vertex) {
+            Some(lobes) => guided::mixture(lobes, vertex, scatter_pdf, sample.wi),
+            None => scatter_pdf,
+        };
         light *= warp::power_heuristic(n * sample.pdf, scatter_pdf);
     }
     let origin = vertex.surface.leave(sample.wi);

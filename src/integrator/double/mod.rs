@@ -16,6 +16,7 @@ mod direct;
 mod environment;
 mod error_function;
 mod frame;
+mod guided;
 mod light;
 mod light_choice;
 mod microfacet;

@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::bsdf::{self, Scattered};
 use super::direct::direct_light;
 use super::frame::Frame;
+use super::guided;
 use super::surface::Surface;
 use super::trace::{Ray, closest};
 use super::{environment, light, light_choice, warp};
@@ -187,7 +188,12 @@ fn scatter(tracer: &PathTracer<'_>, path: &mut Path, vertex: &Vertex<'_>) -> boo
     let (sampler, bounce) = (path.sampler, path.bounce);
     let u_lobe = f64::from(sampler.get_1d(bounce, Slot::Lobe));
     let u = sampler.get_2d(bounce, Slot::Scatter).as_dvec2();
-    let Some(sample) = bsdf::sample(vertex.bsdf, vertex.wo, u_lobe, u) else {
+    let lobes = guided::lobes_at(tracer, bounce, vertex);
+    let sample = match lobes {
+        Some(lobes) => guided::sample(lobes, vertex, u_lobe, u),
+        None => bsdf::sample(vertex.bsdf, vertex.wo, u_lobe, u),
+    };
+    let Some(sample) = sample else {
         return false;
     };
     let (wi, weight) = match sample {
@@ -217,20 +223,31 @@ fn scatter(tracer: &PathTracer<'_>, path: &mut Path, vertex: &Vertex<'_>) -> boo
         direction,
         t_max: f64::INFINITY,
     };
+    let kept = match lobes {
+        _ if tracer.guide.is_some() && vertex.bsdf.is_delta() => f64::INFINITY,
+        // Without the aim: value · cos / pdf is the reflectance.
+        Some(_) => (path.throughput * vertex.bsdf.albedo().as_dvec3()).max_element(),
+        None => (path.throughput * weight).max_element(),
+    };
     path.throughput *= weight;
     path.bounce += 1;
     // The first continuation is always taken.
-    path.bounce < 2 || survives(path, f64::from(sampler.get_1d(bounce, Slot::Roulette)))
+    path.bounce < 2
+        || survives(
+            path,
+            kept,
+            f64::from(sampler.get_1d(bounce, Slot::Roulette)),
+        )
 }
 
-/// Russian roulette by throughput (Arvo and Kirk 1990, "Particle Transport and Image Synthesis").
-fn survives(path: &mut Path, u: f64) -> bool {
+/// Russian roulette by `kept`, the throughput but for the aim of guided rays (Arvo and Kirk 1990, "Particle Transport and Image Synthesis").
+fn survives(path: &mut Path, kept: f64, u: f64) -> bool {
     let most = if path.bounce < TRAPPED_AFTER {
         1.0
     } else {
         f64::from(TRAPPED_SURVIVAL)
     };
-    let wanted = f64::from(SURVIVAL_OF_THROUGHPUT) * path.throughput.max_element();
+    let wanted = f64::from(SURVIVAL_OF_THROUGHPUT) * kept;
     let survival = wanted.clamp(f64::from(MIN_SURVIVAL), most);
     path.throughput /= survival;
     u < survival && path.throughput != DVec3::ZERO

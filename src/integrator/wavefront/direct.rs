@@ -81,7 +81,7 @@ impl LightSamples {
 impl Shade<'_, '_> {
     /// Queues the rays of direct light of a group.
     #[inline(always)]
-    pub(super) fn direct_light<L: Lanes>(&mut self, group: &Group<L>) {
+    pub(super) fn direct_light<L: Lanes>(&mut self, group: &Group<'_, L>) {
         if !self.tracer.counts_depth(self.bounce + 1) {
             return;
         }
@@ -134,7 +134,7 @@ impl Shade<'_, '_> {
 
     /// Queues shadow rays as [`super::PathTracer::shadow_ray`] makes them; returns their number.
     #[inline(always)]
-    fn shadow_rays<L: Lanes>(&mut self, group: &Group<L>, samples: &LightSamples) -> u32 {
+    fn shadow_rays<L: Lanes>(&mut self, group: &Group<'_, L>, samples: &LightSamples) -> u32 {
         let surface = &group.surface;
         let zero = L::splat(0.0);
         let wi = Vec3Lanes::<L>::load(&samples.wi);
@@ -152,8 +152,8 @@ impl Shade<'_, '_> {
         let bits = bits & !L::bits(black);
         if self.tracer.shares_diffuse_emission() {
             let n = L::splat(self.tracer.settings.light_samples as f32);
-            let share =
-                power_heuristic(n * L::load_row(&samples.pdf), z.abs() * L::splat(FRAC_1_PI));
+            let scatter_pdf = group.scatter_pdf(z.abs() * L::splat(FRAC_1_PI), &samples.wi);
+            let share = power_heuristic(n * L::load_row(&samples.pdf), scatter_pdf);
             let shared = contribution.scale(share);
             let is_delta = L::mask_of_bits(samples.delta);
             contribution = Vec3Lanes::select(is_delta, contribution, shared);

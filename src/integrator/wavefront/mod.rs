@@ -5,6 +5,7 @@
 //! steps of the reference, one after the other. Either way the bits are those of the reference.
 
 mod direct;
+mod guided;
 mod paths;
 mod queue;
 mod reuse;

@@ -13,7 +13,7 @@ impl Shade<'_, '_> {
     #[inline(always)]
     ///
     /// Those of `receivers` are sure to go on.
-    pub(super) fn scatter<L: Lanes>(&mut self, group: &Group<L>, receivers: u32) {
+    pub(super) fn scatter<L: Lanes>(&mut self, group: &Group<'_, L>, receivers: u32) {
         let shares_emission = self.tracer.shares_diffuse_emission();
         if self.bounce + 1 >= self.tracer.settings.max_depth.0 && !shares_emission {
             return;
@@ -23,17 +23,27 @@ impl Shade<'_, '_> {
         } else {
             group.sampler
         };
-        let mut local = cosine_hemisphere_lanes(sampler.get_2d(self.bounce, Slot::Scatter));
+        let u = sampler.get_2d(self.bounce, Slot::Scatter);
+        let mut local = cosine_hemisphere_lanes(u);
         let zero = L::splat(0.0);
-        let size = local.z;
         local.z = L::select(group.wo_z.lt(zero), local.z.neg(), local.z);
-        let pdf = size * L::splat(FRAC_1_PI);
-        let direction = (group.frame.to_world(local)).normalize_or(Vec3Lanes::splat(Vec3::ZERO));
+        let (mut z, mut towards) = (local.z, group.frame.to_world(local));
+        if let Some(guided) = &group.guided {
+            let [u_lobe, _] = sampler.get_2d(self.bounce, Slot::Lobe);
+            (z, towards) = guided.aim(group, u_lobe, u, (z, towards));
+        }
+        let size = z.abs();
+        let cosine = size * L::splat(FRAC_1_PI);
+        let direction = towards.normalize_or(Vec3Lanes::splat(Vec3::ZERO));
+        let pdf = match &group.guided {
+            Some(_) => group.scatter_pdf(cosine, &direction.store()),
+            None => cosine,
+        };
         let normal = group.surface.geometric_normal;
         let mut alive =
-            group.is_same_side(local.z) & pdf.gt(zero) & (direction.dot(normal) * local.z).gt(zero);
-        let weight = (group.surface.reflectance.scale(L::splat(FRAC_1_PI))).scale(size / pdf);
-        let mut throughput = group.throughput * weight;
+            group.is_same_side(z) & cosine.gt(zero) & (direction.dot(normal) * z).gt(zero);
+        let value = group.surface.reflectance.scale(L::splat(FRAC_1_PI));
+        let mut throughput = group.throughput * value.scale(size / pdf);
         alive = alive & throughput.max_element().gt(zero);
         if self.bounce >= 1 {
             let most = if self.bounce + 1 < TRAPPED_AFTER {
@@ -41,7 +51,11 @@ impl Shade<'_, '_> {
             } else {
                 TRAPPED_SURVIVAL
             };
-            let wanted = L::splat(SURVIVAL_OF_THROUGHPUT) * throughput.max_element();
+            let kept = match &group.guided {
+                Some(_) => group.throughput * value.scale(size / cosine),
+                None => throughput,
+            };
+            let wanted = L::splat(SURVIVAL_OF_THROUGHPUT) * kept.max_element();
             let survival = wanted.max(L::splat(MIN_SURVIVAL)).min(L::splat(most));
             let sure = L::mask_of_bits(receivers);
             let survival = L::select(sure, L::splat(1.0), survival);
@@ -64,6 +78,13 @@ impl Shade<'_, '_> {
             direction,
         );
         let bits = L::bits(alive) & group.lanes;
+        if group.guided.is_some() {
+            let scales = (cosine / pdf).to_array();
+            for lane in set_bits(receivers & bits) {
+                let id = self.paths.states[group.first + lane].id;
+                self.reuse.aim(id, scales[lane]);
+            }
+        }
         let nowhere = Vec3Lanes::splat(Vec3::ZERO);
         let (from, side) = if shares_emission {
             (group.surface.point, group.lit_normal())
@@ -82,7 +103,7 @@ impl Shade<'_, '_> {
     #[inline(always)]
     fn go_on<L: Lanes>(
         &mut self,
-        group: &Group<L>,
+        group: &Group<'_, L>,
         lanes: u32,
         [origin, direction, throughput, from, side]: [Vec3Lanes<L>; 5],
         pdf: L,

@@ -1,6 +1,7 @@
 use std::ops::Range;
 
 use super::super::reuse::{Receiver, SharedVertex, Stage};
+use super::guided::GuidedLanes;
 use super::paths::{PathState, Paths};
 use super::queue::DirectQueues;
 use super::reuse::Reuse;
@@ -28,7 +29,7 @@ pub(super) struct Shade<'a, 's> {
 }
 
 /// Eight paths of which some have met plain surfaces.
-pub(super) struct Group<L: Lanes> {
+pub(super) struct Group<'s, L: Lanes> {
     /// Index of the first.
     pub(super) first: usize,
     /// A bit for each path on a plain surface.
@@ -44,9 +45,11 @@ pub(super) struct Group<L: Lanes> {
     pub(super) throughput: Vec3Lanes<L>,
     /// For the direct light, and, but at the first surface, for all else.
     pub(super) sampler: PathSamplerLanes<L>,
+    /// Where some of them aim their rays.
+    pub(super) guided: Option<GuidedLanes<'s>>,
 }
 
-impl<L: Lanes> Group<L> {
+impl<L: Lanes> Group<'_, L> {
     /// As [`Vertex::lit_normal`].
     #[inline(always)]
     pub(super) fn lit_normal(&self) -> Vec3Lanes<L> {
@@ -104,7 +107,7 @@ impl LaneKernel for Shade<'_, '_> {
 
 impl<'s> Shade<'_, 's> {
     #[inline(always)]
-    fn group<L: Lanes>(&self, first: usize, found: &Found) -> Group<L> {
+    fn group<L: Lanes>(&self, first: usize, found: &Found) -> Group<'s, L> {
         let mut surface = found.surfaces::<L>();
         let (mut directions, mut throughputs) = (Vec3Array::ZERO, Vec3Array::ZERO);
         let mut tallies = [0; ROW];
@@ -122,7 +125,7 @@ impl<'s> Shade<'_, 's> {
         let mended = agree.le(L::splat(0.0));
         surface.shading_normal =
             Vec3Lanes::select(mended, surface.geometric_normal, surface.shading_normal);
-        Group {
+        let mut group = Group {
             first,
             lanes: found.lanes,
             mended: L::bits(mended),
@@ -132,7 +135,12 @@ impl<'s> Shade<'_, 's> {
             surface,
             throughput: Vec3Lanes::load(&throughputs),
             sampler: PathSamplerLanes::new(samplers, self.bounce, Slot::LightPoint(0)),
+            guided: None,
+        };
+        if let Some(guide) = self.tracer.guide_after(self.bounce) {
+            group.guided = GuidedLanes::look_up(guide, &group);
         }
+        group
     }
 
     /// The samplers of the paths from `first` on.
@@ -169,6 +177,9 @@ impl<'s> Shade<'_, 's> {
         }
         if self.tracer.scatter(&mut path, &vertex) {
             self.next.push((id, tally), &path);
+            if let Stage::Arriving { scale, .. } = path.stage {
+                self.reuse.aim(id, scale);
+            }
         }
     }
 
@@ -198,12 +209,15 @@ impl<'s> Shade<'_, 's> {
         }
         match self.reuse.receiver_bounce(id) {
             None => Stage::Waiting,
-            Some(bounce) => Stage::Arriving { bounce: bounce + 1 },
+            Some(bounce) => Stage::Arriving {
+                bounce: bounce + 1,
+                scale: self.reuse.scale(id),
+            },
         }
     }
 
     /// [`Self::share_one`] of those of a group that come straight from their receivers.
-    fn share<L: Lanes>(&mut self, group: &mut Group<L>) {
+    fn share<L: Lanes>(&mut self, group: &mut Group<'_, L>) {
         let mut shared = 0;
         for lane in set_bits(group.lanes & !group.mended) {
             let PathState { id, tally, .. } = self.paths.states[group.first + lane];
@@ -218,8 +232,10 @@ impl<'s> Shade<'_, 's> {
         let (point, error) = (surface.point.store(), surface.error.store());
         let geometric = group.lit_side(surface.geometric_normal).store();
         let shading = group.lit_normal().store();
+        let mut throughput = group.throughput.store();
         for lane in set_bits(shared) {
             let id = self.paths.states[group.first + lane].id;
+            throughput.set(lane, Rgb::splat(self.reuse.scale(id)));
             let vertex = SharedVertex {
                 place: point.get(lane),
                 error: error.get(lane),
@@ -230,12 +246,11 @@ impl<'s> Shade<'_, 's> {
             self.reuse.share(id, &vertex);
             group.tallies[lane] = id + self.samplers.len() as u32;
         }
-        let one = Vec3Lanes::splat(Rgb::ONE);
-        group.throughput = Vec3Lanes::select(L::mask_of_bits(shared), one, group.throughput);
+        group.throughput = Vec3Lanes::load(&throughput);
     }
 
     /// Makes receivers of those of a group that wait for one; returns which.
-    fn receive<L: Lanes>(&mut self, group: &Group<L>) -> u32 {
+    fn receive<L: Lanes>(&mut self, group: &Group<'_, L>) -> u32 {
         let mut receivers = 0;
         for lane in set_bits(group.lanes) {
             let PathState { id, tally, .. } = self.paths.states[group.first + lane];
@@ -278,7 +293,7 @@ impl<'s> Shade<'_, 's> {
     /// Direct light of the `lanes` of a group whose lights are not sampled in lanes.
     pub(super) fn direct_light_one_by_one<L: Lanes>(
         &mut self,
-        group: &Group<L>,
+        group: &Group<'_, L>,
         surfaces: &SurfaceArrays,
     ) {
         for lane in set_bits(group.lanes) {

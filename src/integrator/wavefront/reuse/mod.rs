@@ -28,6 +28,8 @@ pub(super) struct Reuse {
     rows: usize,
     /// By number of the path: bounces before its receiver, or [`NONE`].
     bounces: Vec<u32>,
+    /// By number of the path: as of [`super::super::reuse::Stage::Arriving`].
+    scales: Vec<f32>,
     /// Of member m in row r at m · rows + r.
     receivers: Vec<ReceiverRow>,
     shared: Vec<SharedRow>,
@@ -72,6 +74,8 @@ impl Reuse {
         self.rows = (paths / self.members).div_ceil(self.width);
         self.bounces.clear();
         self.bounces.resize(paths, NONE);
+        self.scales.clear();
+        self.scales.resize(paths, 1.0);
         let rows = self.members * self.rows;
         self.receivers.resize(rows, ReceiverRow::NONE);
         self.shared.resize(rows, SharedRow::NONE);
@@ -90,6 +94,16 @@ impl Reuse {
     pub(super) fn receiver_bounce(&self, id: u32) -> Option<u32> {
         let bounce = self.bounces[id as usize];
         (bounce != NONE).then_some(bounce)
+    }
+
+    /// Scale of what path `id` will share.
+    pub(super) fn scale(&self, id: u32) -> f32 {
+        self.scales[id as usize]
+    }
+
+    /// Takes note of the scale of a path that has left its receiver.
+    pub(super) fn aim(&mut self, id: u32, scale: f32) {
+        self.scales[id as usize] = scale;
     }
 
     pub(super) fn receive(&mut self, id: u32, receiver: &Receiver) {
