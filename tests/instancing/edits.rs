@@ -7,7 +7,7 @@ use softbox::scene::{
     PrepareCache, PrepareCounts, PrepareSettings, PreparedScene, Scene, cornell_box, prepare_with,
 };
 
-use crate::scenes::{ball, place, samples, view};
+use crate::scenes::{SETTINGS, ball, place, samples, view};
 
 const HERE: DVec3 = DVec3::new(0.2, 0.5, 0.1);
 
@@ -50,7 +50,7 @@ fn next(cache: &mut PrepareCache, scene: &Scene) -> PreparedScene {
 /// Bits of the samples of a small picture.
 fn picture(scene: &PreparedScene) -> Vec<[u32; 3]> {
     let camera = view(DVec3::new(0.0, 0.75, 4.8), DVec3::new(0.0, 0.75, 0.0), 31.0);
-    let (radiance, _) = samples(scene, &camera, (40, 30), 4);
+    let (radiance, _) = samples(scene, SETTINGS, &camera, (40, 30), 4);
     radiance
         .iter()
         .map(|c| c.to_array().map(f32::to_bits))

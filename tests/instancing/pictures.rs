@@ -3,7 +3,7 @@ use softbox::color::Rgb;
 use softbox::integrator::{PathCounts, PathId, PathTracer, reference};
 use softbox::scene::{Instancing, Scene, Surface, cornell_box};
 
-use crate::scenes::{SETTINGS, ball, place, prepared, samples, scattered, view};
+use crate::scenes::{SETTINGS, UNGUIDED, ball, place, prepared, samples, scattered, view};
 
 /// The Cornell box with turned, mirrored and stretched balls of two materials, with and without
 /// normals in the file.
@@ -59,8 +59,8 @@ fn pictures_with_instances_are_those_with_copies() {
     assert!(stats.instances >= 18 && stats.meshes >= 2, "{stats:?}");
     let total = copies.aggregate().primitive_count();
     assert_eq!(shared.aggregate().primitive_count(), total);
-    let (a, counts) = samples(&copies, &camera, size, count);
-    let (b, others) = samples(&shared, &camera, size, count);
+    let (a, counts) = samples(&copies, UNGUIDED, &camera, size, count);
+    let (b, others) = samples(&shared, UNGUIDED, &camera, size, count);
     assert_eq!((counts.invalid_samples, others.invalid_samples), (0, 0));
     // Where rounding sends a path elsewhere, all that follows differs.
     let is_other = |(a, b): &(Rgb, Rgb)| (*a - *b).abs().max_element() > 1e-3 * (1.0 + a.length());
@@ -94,7 +94,7 @@ fn pictures_with_instances_are_those_with_copies() {
 fn both_path_tracers_agree_on_instances() {
     let scene = prepared(&crowd(), Instancing::Always);
     let camera = view(DVec3::new(0.0, 0.75, 4.8), DVec3::new(0.0, 0.75, 0.0), 31.0);
-    let (radiance, _) = samples(&scene, &camera, (24, 18), 2);
+    let (radiance, _) = samples(&scene, SETTINGS, &camera, (24, 18), 2);
     let camera = softbox::camera::RayCamera::new(&camera, 24, 18, scene.normalization());
     let tracer = PathTracer::new(&scene, &camera, SETTINGS);
     for (i, radiance) in radiance.iter().enumerate() {
@@ -127,7 +127,7 @@ fn closed_instances_are_dark_inside() {
         let scene = prepared(&builder.finish(), Instancing::Always);
         let center = places[0].transform_point3(DVec3::ZERO);
         let camera = view(center, center + DVec3::X, 100.0);
-        let (radiance, counts) = samples(&scene, &camera, (40, 40), 16);
+        let (radiance, counts) = samples(&scene, SETTINGS, &camera, (40, 40), 16);
         assert!(counts.closest_rays > 80_000, "paths stay alive: {counts:?}");
         let leaks = radiance.iter().filter(|r| **r != Rgb::ZERO).count();
         assert_eq!(leaks, 0, "size {size}");
@@ -177,7 +177,7 @@ fn a_hundred_million_triangles_take_little_memory() {
     assert!(stats.bytes < 10_000_000, "{stats:?}");
     assert_eq!(scene.aggregate().stats().primitives, 0, "nothing is copied");
     let camera = view(DVec3::new(0.0, 8.0, 60.0), DVec3::ZERO, 60.0);
-    let (radiance, counts) = samples(&scene, &camera, (48, 32), 4);
+    let (radiance, counts) = samples(&scene, SETTINGS, &camera, (48, 32), 4);
     assert_eq!(counts.invalid_samples, 0);
     let (least, most) = (0.05, 1.0);
     assert!(

@@ -24,6 +24,12 @@ pub(crate) const SETTINGS: PathSettings = PathSettings {
     reuse: 1,
 };
 
+/// The same without rays that are aimed: light paths, which tell where to, part by rounding.
+pub(crate) const UNGUIDED: PathSettings = PathSettings {
+    mode: Mode::Importance,
+    ..SETTINGS
+};
+
 /// A closed lumpy ball of radius about 1 with two material slots; 4 · `n`² − 4 · `n` triangles.
 pub(crate) fn ball(n: u32, has_normals: bool) -> Mesh {
     let columns = 2 * n;
@@ -143,12 +149,13 @@ pub(crate) fn view(eye: DVec3, target: DVec3, degrees: f64) -> Camera {
 /// The radiance of every sample of a picture, sample by sample, and the work.
 pub(crate) fn samples(
     scene: &PreparedScene,
+    settings: PathSettings,
     camera: &Camera,
     (width, height): (u32, u32),
     count: u32,
 ) -> (Vec<Rgb>, PathCounts) {
     let camera = RayCamera::new(camera, width, height, scene.normalization());
-    let tracer = PathTracer::new(scene, &camera, SETTINGS);
+    let tracer = PathTracer::new(scene, &camera, settings);
     let ids: Vec<PathId> = (0..width * height)
         .flat_map(|pixel| {
             (0..count).map(move |sample| PathId {
