@@ -68,7 +68,7 @@
 //!   Scenes of a few dozen primitives are swept without a tree, with the same hits.
 //! - A mesh with many copies is prepared once ([`geometry::Instances`], [`scene::Instancing`]): a ray
 //!   that meets the box of an instance goes on in the space of the mesh. Copies and instances give
-//!   the same picture up to rounding. An edit that moves an object keeps its hierarchy
+//!   the same picture up to rounding, and up to noise where rays are aimed. An edit that moves an object keeps its hierarchy
 //!   ([`scene::PrepareCache`]).
 //! - [`scene::PreparedScene`] is immutable and shared by `Arc`. A better hierarchy, made in the
 //!   background, makes another one over the same tables; renders change over between two batches.
@@ -91,6 +91,7 @@
 //! | a random number | a variant of [`sampling::Slot`] |
 //! | a step of the path | `integrator/path.rs`, and in lanes where `wavefront/shade.rs` takes it; `tests/both_tracers` |
 //! | an instruction set | [`math::Isa`] and an implementation of [`math::Lanes`] |
+//! | where rays are aimed | `guide/`, `scene/photons.rs`, `integrator/guided.rs`; once more in `integrator/double/` |
 //! | a setting | [`settings`]; a flag in the program's `args`, a row in a panel |
 //! | a figure of `bench` | [`study`]; the program's `bench/` prints it |
 //! | a file format | `io/`: a file, and a line where the extension is looked up |
