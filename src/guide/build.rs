@@ -10,7 +10,7 @@ use crate::math::Aabb;
 const MOST_AIMED: f32 = 0.35;
 
 /// What the flux of all light in the scene, spread over all surfaces, counts for against the light that
-/// is aimed at. Half and twice of it are worse by a tenth and more.
+/// is aimed at. On one box of mirror and glass half of it was worse by 12 %, twice by 5 %.
 const OTHER_LIGHT: f32 = 0.3;
 
 /// Cells of more photons than this have smaller ones inside.
