@@ -120,6 +120,7 @@ fn noise(scene: &PreparedScene, mode: Mode) -> f64 {
         only_last_bounce: false,
         seed: 3,
         replicates: 1,
+        reuse: 1,
     };
     let tracer = PathTracer::new(scene, &camera, settings);
     let mean = |pixel: u32, first: u32| {
