@@ -41,7 +41,10 @@
 //!
 //! # Noise
 //! - The samples of a pixel are points of an Owen-scrambled net ([`sampling::PathSampler`]), not
-//!   independent numbers; `replicates` deals them out to sequences that are, for honest errors.
+//!   independent numbers; `replicates` deals them out to sequences that are, for honest intervals.
+//! - A picture tells its error by the halves of each pixel's samples ([`film::PixelStats::squared_error`]),
+//!   or by its replicates; adaptive sampling ([`settings::AdaptiveGoal`]) decides between passes, from
+//!   the film alone.
 //! - One light is chosen per sample, by what it may give at the vertex ([`light::LightTree`]), and a
 //!   point on it by solid angle or nearly so; parallelograms are sampled as a whole. Where all lights
 //!   are a few without extent, each is sampled.

@@ -106,6 +106,16 @@ impl Reuse {
         }
     }
 
+    /// Of 3×3 pixels, the number whose noise is independent, at least.
+    pub fn independent_of_nine(self) -> usize {
+        match self.0 {
+            1 | 2 => 9,
+            4 => 6,
+            8 => 4,
+            _ => 2,
+        }
+    }
+
     /// Pixels that share; 0 for [`Self::AUTO`].
     pub fn pixels(self) -> u32 {
         self.0
@@ -127,28 +137,67 @@ impl std::str::FromStr for Reuse {
     }
 }
 
-/// When an adaptive pixel may stop.
+/// What adaptive sampling is for: which pixels get how many samples.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum AdaptiveRule {
-    /// The course's rule: each pixel alone, by its luminance.
-    Course,
-    /// At least 64 samples (256 in hemisphere mode), all channels, pooled over 3×3 pixels, an
-    /// absolute floor for dark pixels, and no neighbour still open.
+pub enum AdaptiveGoal {
+    /// The same quality everywhere: a pixel ends when the 95 % interval of all channels, pooled over
+    /// 3×3 pixels, is within the tolerance, and so it is for all its neighbours. At least 64 samples
+    /// (256 in hemisphere mode), dealt out to independent replicates that tell the interval.
     #[default]
-    Neighbourhood,
+    #[serde(alias = "neighbourhood")]
+    Even,
+    /// The least mean squared relative error for the samples: each pixel gets them in proportion to
+    /// its deviation relative to its brightness. There is no tolerance; the limit of samples is the
+    /// mean of the picture.
+    LeastError,
+    /// The course's rule: each pixel ends by itself, by the spread of its luminance.
+    Course,
 }
 
-/// Adaptive sampling by the 95 % confidence interval. Biased: off by default.
+impl AdaptiveGoal {
+    /// All goals, in the order in which they are offered.
+    pub const ALL: [Self; 3] = [Self::Even, Self::LeastError, Self::Course];
+
+    /// The name used in the command line, the window and the metadata.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Even => "even",
+            Self::LeastError => "least-error",
+            Self::Course => "course",
+        }
+    }
+}
+
+/// Adaptive sampling. Slightly biased, as what samples have found decides about more of them: off by
+/// default.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Adaptive {
-    /// Samples between two decisions.
+    /// Samples (with least error the mean of them) between two decisions.
     pub batch: u32,
-    /// Half width of the interval as a fraction of the mean at which a pixel stops.
+    /// Half width of the 95 % interval as a fraction of the mean at which a pixel ends.
     pub tolerance: f32,
-    /// The rule that decides.
-    pub rule: AdaptiveRule,
+    /// What it is for.
+    #[serde(default)]
+    pub goal: AdaptiveGoal,
+    /// Exposure in stops at which dark pixels are looked at: with even quality, brightness below
+    /// half of 1/255 there counts as that.
+    #[serde(default)]
+    pub exposure: f32,
 }
+
+impl Adaptive {
+    /// Independent sequences that the samples of a pixel are dealt out to.
+    pub fn replicates(&self) -> u32 {
+        match self.goal {
+            AdaptiveGoal::Even => REPLICATES,
+            AdaptiveGoal::LeastError | AdaptiveGoal::Course => 1,
+        }
+    }
+}
+
+/// Replicates of even quality.
+const REPLICATES: u32 = 4;
 
 /// Where the camera comes from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -224,7 +273,7 @@ impl View {
 /// When a render is finished, whichever comes first; nothing set means never.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StopRule {
-    /// Samples per pixel (the most of them, with adaptive sampling).
+    /// Samples per pixel; with adaptive sampling the most of them, or with least error their mean.
     pub samples_per_pixel: Option<u32>,
     /// Seconds of rendering.
     pub seconds: Option<f64>,
@@ -311,6 +360,11 @@ impl RenderSettings {
         self.region
             .and_then(|r| r.clipped(self.width, self.height))
             .unwrap_or(whole)
+    }
+
+    /// Independent sequences that the samples of a pixel are dealt out to, at least 1.
+    pub fn replicates(&self) -> u32 {
+        self.adaptive.as_ref().map_or(1, Adaptive::replicates)
     }
 
     /// The instruction set that `isa` stands for.

@@ -88,8 +88,14 @@ impl Reference {
     /// The reference's squared error over ours: both path trace, so their errors lie in the same
     /// places.
     fn noise_ratio(&self, pixels: &[PixelStats]) -> f64 {
-        let own = pixels.iter().filter_map(PixelStats::relative_squared_error);
-        self.noise / (own.sum::<f64>() / pixels.len() as f64)
+        let relative = |pixel: &PixelStats| {
+            let (mean, n) = (pixel.mean(), f64::from(pixel.count()));
+            let variance = pixel.variance()?;
+            let of_channel = |c: usize| variance[c] / n / (mean[c] * mean[c] + 0.01);
+            Some((0..3).map(of_channel).sum::<f64>() / 3.0)
+        };
+        let own = pixels.iter().filter_map(relative).sum::<f64>();
+        self.noise / (own / pixels.len() as f64)
     }
 
     /// The means over `places` of ours and of the reference, and the squared standard error of

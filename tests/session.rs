@@ -1,5 +1,7 @@
 //! Test F8: the film does not depend on threads, pauses or passes; jobs replace each other cleanly.
 
+#[path = "session/noise.rs"]
+mod noise;
 #[path = "session/refinement.rs"]
 mod refinement;
 
@@ -12,7 +14,7 @@ use softbox::session::{
     RenderJob, RenderSession, SampleCounts, SessionOptions, SessionState, Snapshot, StopReason,
 };
 use softbox::settings::{
-    Adaptive, AdaptiveRule, CameraRule, IntegratorKind, Mode, RenderSettings, StopRule, View,
+    Adaptive, AdaptiveGoal, CameraRule, IntegratorKind, Mode, RenderSettings, StopRule, View,
 };
 
 const PATIENCE: Duration = Duration::from_secs(60);
@@ -223,25 +225,54 @@ fn a_region_renders_the_same_pixels_and_nothing_else() {
     assert_eq!(counts.iter().filter(|&&n| n == 5).count(), 40 * 35);
 }
 
-#[test]
-fn adaptive_sampling_does_not_depend_on_threads_and_ends_early_where_it_can() {
-    let scene = scene();
-    let mut adaptive = job(&scene, 512);
-    adaptive.settings.adaptive = Some(Adaptive {
-        batch: 16,
-        tolerance: 0.2,
-        rule: AdaptiveRule::Neighbourhood,
+fn adaptive_job(scene: &Arc<Scene>, goal: AdaptiveGoal, threads: usize) -> RenderJob {
+    let mut job = job(scene, 512);
+    job.settings.adaptive = Some(Adaptive {
+        batch: 32,
+        tolerance: 0.1,
+        goal,
+        exposure: 0.0,
     });
-    adaptive.settings.threads = 1;
-    let one = render(adaptive.clone(), false);
-    adaptive.settings.threads = 3;
-    let three = render(adaptive, true);
-    assert_eq!(bits(&one), bits(&three));
-    assert_eq!(one.samples, three.samples);
+    job.settings.threads = threads;
+    job
+}
+
+#[test]
+fn adaptive_sampling_does_not_depend_on_threads_passes_and_pauses() {
+    let scene = scene();
+    for goal in AdaptiveGoal::ALL {
+        let one = render(adaptive_job(&scene, goal, 1), false);
+        let three = render(adaptive_job(&scene, goal, 3), true);
+        assert_eq!(bits(&one), bits(&three), "{goal:?}");
+        assert_eq!(one.samples, three.samples, "{goal:?}");
+        let session = RenderSession::new(SessionOptions { interactive: true }, || ());
+        session.request(adaptive_job(&scene, goal, 2));
+        for _ in 0..20 {
+            session.pause();
+            wait_until("a pause", || session.status().is_held());
+            session.resume();
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        let paused = finish(&session);
+        assert_eq!(bits(&one), bits(&paused), "{goal:?}");
+    }
+}
+
+#[test]
+fn even_quality_ends_early_where_it_can_and_least_error_spends_its_budget() {
+    let scene = scene();
+    let even = render(adaptive_job(&scene, AdaptiveGoal::Even, 2), false);
     assert!(
-        one.samples_mean < 500.0 && one.samples_mean >= 64.0,
+        even.samples_mean < 500.0 && even.samples_mean >= 64.0,
         "{}",
-        one.samples_mean
+        even.samples_mean
+    );
+    let least = render(adaptive_job(&scene, AdaptiveGoal::LeastError, 2), false);
+    assert!(
+        (500.0..=512.0).contains(&least.samples_mean) && least.samples_max > 600,
+        "{} {}",
+        least.samples_mean,
+        least.samples_max
     );
 }
 

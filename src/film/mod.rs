@@ -2,10 +2,13 @@
 
 mod cluster;
 mod pixel;
+mod replicates;
+mod rows;
 mod tile;
 
 pub use cluster::Cluster;
 pub use pixel::PixelStats;
+pub use rows::{Pooled, Rows};
 pub use tile::{TILE_SIZE, Tile};
 
 use crate::image::Region;
@@ -14,16 +17,29 @@ use crate::image::Region;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Film {
     region: Region,
+    replicates: u32,
     tiles: Vec<Tile>,
 }
 
 impl Film {
     /// An empty film of `region`.
     pub fn new(region: Region) -> Self {
+        Self::with_replicates(region, 1)
+    }
+
+    /// An empty film of `region` that also keeps the means of `replicates` independent sequences
+    /// of samples, at least 1, of each pixel.
+    pub fn with_replicates(region: Region, replicates: u32) -> Self {
         Self {
             region,
-            tiles: tile::cover(region),
+            replicates,
+            tiles: tile::cover(region, replicates),
         }
+    }
+
+    /// The sequences whose means are kept apart.
+    pub fn replicates(&self) -> u32 {
+        self.replicates
     }
 
     /// The pixels that the film covers, in image coordinates.
@@ -59,23 +75,28 @@ impl Film {
         &self.tiles[row * columns..(row + 1) * columns]
     }
 
-    /// Sums over all pixels: samples taken, and the relative squared error of the picture that
-    /// the sample variance predicts (see [`PixelStats::relative_squared_error`]).
+    /// The pixels row by row, for what looks at neighbours.
+    pub fn rows(&self) -> Rows {
+        Rows::new(self)
+    }
+
+    /// Sums over all pixels: samples taken, and the relative squared error of the picture as the
+    /// samples tell it ([`Tile::squared_error`]).
     pub fn summary(&self) -> FilmSummary {
         let mut summary = FilmSummary::default();
         let mut error = 0.0;
-        for pixel in self.tiles.iter().flat_map(Tile::pixels) {
-            summary.pixels += 1;
-            summary.samples += u64::from(pixel.count());
-            summary.most = summary.most.max(pixel.count());
-            match pixel.relative_squared_error() {
-                Some(e) => error += e,
-                None => summary.unknown += 1,
+        for tile in &self.tiles {
+            let (sum, unknown) = tile.relative_squared_error();
+            error += sum;
+            summary.unknown += unknown;
+            summary.pixels += tile.pixels().len() as u64;
+            for pixel in tile.pixels() {
+                summary.samples += u64::from(pixel.count());
+                summary.most = summary.most.max(pixel.count());
             }
         }
-        let known = summary.pixels - summary.unknown;
-        if summary.unknown == 0 && known > 0 {
-            summary.relative_error = Some((error / known as f64).sqrt());
+        if summary.unknown == 0 && summary.pixels > 0 {
+            summary.relative_error = Some((error / summary.pixels as f64).sqrt());
         }
         summary
     }
@@ -90,7 +111,7 @@ pub struct FilmSummary {
     pub samples: u64,
     /// Most samples in one pixel.
     pub most: u32,
-    /// Pixels with fewer than two samples, whose error is unknown.
+    /// Pixels with too few samples, whose error is unknown.
     pub unknown: u64,
     /// Root of the mean relative squared error; `None` while some pixel's error is unknown.
     pub relative_error: Option<f64>,

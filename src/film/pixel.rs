@@ -5,16 +5,34 @@ use crate::color::Rgb;
 /// Samples are added one by one in the order of their index, so that the result does not depend
 /// on how they were divided into passes. Welford 1962, "Note on a Method for Calculating Corrected
 /// Sums of Squares and Products", in f64.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PixelStats {
     mean: [f64; 3],
     /// Sum of squared deviations from the mean.
     deviation: [f64; 3],
     /// The same for the luminance, which the course's adaptive rule looks at.
     luminance_deviation: f64,
+    /// The mean when the number of samples was last a power of two.
+    mark: [f32; 3],
+    /// Square of half the difference that there was then between the means of the two halves.
+    half_difference: [f32; 3],
     count: u32,
-    /// The pixel takes no more samples (adaptive sampling).
-    closed: bool,
+    /// The number of samples at which the pixel takes no more (adaptive sampling).
+    limit: u32,
+}
+
+impl Default for PixelStats {
+    fn default() -> Self {
+        Self {
+            mean: [0.0; 3],
+            deviation: [0.0; 3],
+            luminance_deviation: 0.0,
+            mark: [0.0; 3],
+            half_difference: [0.0; 3],
+            count: 0,
+            limit: u32::MAX,
+        }
+    }
 }
 
 impl PixelStats {
@@ -32,6 +50,18 @@ impl PixelStats {
         }
         self.luminance_deviation +=
             luminance_before * (radiance_luminance - luminance_f64(self.mean));
+        if self.count.is_power_of_two() {
+            self.compare_halves();
+        }
+    }
+
+    /// The mean of all lies in the middle between those of both halves, of which the first is known.
+    fn compare_halves(&mut self) {
+        for channel in 0..3 {
+            let half = self.mean[channel] - f64::from(self.mark[channel]);
+            self.half_difference[channel] = (half * half) as f32;
+            self.mark[channel] = self.mean[channel] as f32;
+        }
     }
 
     /// Samples so far.
@@ -64,25 +94,46 @@ impl PixelStats {
         (self.count > 1).then(|| (luminance_f64(self.mean), variance))
     }
 
-    /// The squared error of the mean that the variance predicts, relative as in relMSE:
-    /// the mean over the channels of σ²/n / (mean² + 0.01). `None` below two samples.
-    pub fn relative_squared_error(&self) -> Option<f64> {
-        let variance = self.variance()?;
-        let n = f64::from(self.count);
-        let sum: f64 = (0..3)
-            .map(|c| variance[c] / n / (self.mean[c] * self.mean[c] + 0.01))
-            .sum();
-        Some(sum / 3.0)
+    /// The squared error of the mean per channel; `None` below two samples.
+    ///
+    /// The first 2ᵏ samples are a low-discrepancy set, and so are their halves, which tell by their
+    /// difference what independent samples would tell by their variance. Were the halves
+    /// independent, the expected square of half their difference would be the squared error; as they
+    /// complete each other, it is somewhat larger. From there the error falls with the number of
+    /// samples.
+    pub fn squared_error(&self) -> Option<[f64; 3]> {
+        let share = f64::from(1 << self.count.checked_ilog2()?) / f64::from(self.count);
+        (self.count > 1).then(|| self.half_difference.map(|d| f64::from(d) * share))
+    }
+
+    /// The number of samples at which the pixel takes no more; `u32::MAX` while it is open.
+    pub fn limit(&self) -> u32 {
+        self.limit
+    }
+
+    /// Lets the pixel take samples up to `limit` of them.
+    pub fn set_limit(&mut self, limit: u32) {
+        self.limit = limit;
+    }
+
+    /// True when sample number `sample` is to come.
+    pub fn lacks(&self, sample: u32) -> bool {
+        self.count <= sample && sample < self.limit
+    }
+
+    /// True when sample number `sample` is the next one.
+    pub fn takes(&self, sample: u32) -> bool {
+        self.count == sample && sample < self.limit
     }
 
     /// True when adaptive sampling has ended this pixel.
     pub fn is_closed(&self) -> bool {
-        self.closed
+        self.count >= self.limit
     }
 
     /// Ends this pixel.
     pub fn close(&mut self) {
-        self.closed = true;
+        self.limit = self.count;
     }
 }
 
@@ -116,6 +167,31 @@ mod tests {
                 "{variance} {expected}"
             );
         }
+    }
+
+    /// Independent samples, so that both estimates have the same mean.
+    #[test]
+    fn halves_tell_the_error_of_independent_samples() {
+        let mut random = 1_u32;
+        for n in [2_u32, 8, 12, 64, 100] {
+            let (mut sum, pixels) = (0.0, 20_000);
+            for _ in 0..pixels {
+                let mut stats = PixelStats::default();
+                for _ in 0..n {
+                    random = random.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
+                    let mixed = (random ^ (random >> 15)).wrapping_mul(0x2C1B_3C6D);
+                    stats.add(Rgb::splat((mixed >> 8) as f32 / 16_777_216.0));
+                }
+                sum += stats.squared_error().map_or(0.0, |e| e[0]);
+            }
+            let expected = 1.0 / 12.0 / f64::from(n);
+            let ratio = sum / f64::from(pixels) / expected;
+            assert!((ratio - 1.0).abs() < 0.05, "{n} samples: {ratio}");
+        }
+        let mut single = PixelStats::default();
+        assert_eq!(single.squared_error(), None);
+        single.add(Rgb::ONE);
+        assert_eq!(single.squared_error(), None);
     }
 
     /// Test F1: the mean of many samples does not drift.

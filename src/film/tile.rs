@@ -1,4 +1,6 @@
 use super::PixelStats;
+use super::replicates::Replicates;
+use crate::color::Rgb;
 use crate::image::Region;
 
 /// Edge of a tile in pixels.
@@ -14,12 +16,63 @@ pub(super) const BLOCK_HEIGHT: u32 = 4;
 pub struct Tile {
     area: Region,
     pixels: Vec<PixelStats>,
+    replicates: Replicates,
 }
 
 impl Tile {
     /// Forgets all samples.
     pub fn clear(&mut self) {
         self.pixels.fill(PixelStats::default());
+        self.replicates.clear();
+    }
+
+    /// Adds the next sample of pixel number `index`, of finite radiance.
+    pub fn add(&mut self, index: usize, radiance: Rgb) {
+        let pixel = &mut self.pixels[index];
+        self.replicates.add(index, pixel.count(), radiance);
+        pixel.add(radiance);
+    }
+
+    /// The squared error of the mean of pixel number `index` per channel: by its replicates where it
+    /// has some, else by [`PixelStats::squared_error`]. `None` while there are too few samples.
+    pub fn squared_error(&self, index: usize) -> Option<[f64; 3]> {
+        let pixel = &self.pixels[index];
+        if self.replicates.number() > 1 {
+            self.replicates.squared_error(index, pixel.count())
+        } else {
+            pixel.squared_error()
+        }
+    }
+
+    /// The sum over all pixels of their squared error relative to their brightness as in relMSE, the
+    /// mean over the channels of e² / (µ² + 0.01); and the number of pixels whose error is unknown.
+    ///
+    /// The brightness µ is the pixel's own or that of its neighbours, whichever is less. Its own
+    /// alone is large when, by chance, its error is: where few samples meet a light, that hides up to
+    /// three quarters of the squared error.
+    pub(super) fn relative_squared_error(&self) -> (f64, u64) {
+        let (width, height) = (self.area.width as usize, self.area.height as usize);
+        let mut columns = vec![[0.0; 3]; width];
+        let (mut sum, mut unknown) = (0.0, 0);
+        for y in 0..height {
+            let rows = y.saturating_sub(1)..(y + 2).min(height);
+            for (x, column) in columns.iter_mut().enumerate() {
+                let of_row = |row: usize| self.pixels[row * width + x].mean();
+                *column = rows.clone().map(of_row).fold([0.0; 3], added);
+            }
+            for x in 0..width {
+                let index = y * width + x;
+                let around = x.saturating_sub(1)..(x + 2).min(width);
+                let others = (around.len() * rows.len()).saturating_sub(1);
+                let own = self.pixels[index].mean();
+                let all = columns[around].iter().copied().fold([0.0; 3], added);
+                match self.squared_error(index) {
+                    Some(error) => sum += relative(error, own, all, others),
+                    None => unknown += 1,
+                }
+            }
+        }
+        (sum, unknown)
     }
 
     /// Where the tile lies in the image.
@@ -52,8 +105,26 @@ impl Tile {
     }
 }
 
-/// Tiles that cover `region`, row by row: what lies in it of a grid that begins at pixel (0, 0).
-pub(super) fn cover(region: Region) -> Vec<Tile> {
+fn added(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+}
+
+/// The relative squared error of a pixel of mean `own`; `all` is the sum of the means of it and its
+/// `others` neighbours.
+fn relative(error: [f64; 3], own: [f64; 3], all: [f64; 3], others: usize) -> f64 {
+    let of_channel = |c: usize| {
+        let brightness = match others {
+            0 => own[c],
+            n => own[c].min((all[c] - own[c]) / n as f64),
+        };
+        error[c] / (brightness * brightness + 0.01)
+    };
+    (0..3).map(of_channel).sum::<f64>() / 3.0
+}
+
+/// Tiles that cover `region`, row by row: what lies in it of a grid that begins at pixel (0, 0), with
+/// `replicates` of each pixel.
+pub(super) fn cover(region: Region, replicates: u32) -> Vec<Tile> {
     let (right, bottom) = (region.x + region.width, region.y + region.height);
     let mut tiles = Vec::new();
     for (y, height) in steps(region.y, bottom) {
@@ -65,7 +136,11 @@ pub(super) fn cover(region: Region) -> Vec<Tile> {
                 height,
             };
             let pixels = vec![PixelStats::default(); (width * height) as usize];
-            tiles.push(Tile { area, pixels });
+            tiles.push(Tile {
+                area,
+                replicates: Replicates::new(replicates, pixels.len()),
+                pixels,
+            });
         }
     }
     tiles

@@ -54,7 +54,7 @@ impl From<&RenderSettings> for PathSettings {
             max_depth: settings.max_depth,
             only_last_bounce: settings.only_last_bounce,
             seed: settings.seed,
-            replicates: 1,
+            replicates: settings.replicates(),
             reuse: settings.reuse.pixels(),
         }
     }

@@ -2,6 +2,7 @@ use std::sync::Arc;
 
 use super::RenderJob;
 use crate::bvh::{BvhQuality, BvhSettings};
+use crate::settings::AdaptiveGoal;
 
 /// How much of a running render a new job leaves standing, from nothing lost to all.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -35,6 +36,14 @@ impl Change {
         film_settings.stop = a.stop;
         film_settings.threads = a.threads;
         film_settings.bvh = a.bvh;
+        let ends_between_decisions = a.adaptive.is_some_and(|adaptive| {
+            let end = a.stop.samples_per_pixel.unwrap_or(0);
+            adaptive.goal == AdaptiveGoal::LeastError && !end.is_multiple_of(adaptive.batch.max(1))
+        });
+        if ends_between_decisions && a.stop != b.stop {
+            // The last samples were given out for this end.
+            return Self::Film;
+        }
         if old.camera != new.camera || *a != film_settings {
             Self::Film
         } else {
@@ -63,7 +72,7 @@ mod tests {
     use crate::camera::Camera;
     use crate::math::Isa;
     use crate::scene::Scene;
-    use crate::settings::{RenderSettings, View};
+    use crate::settings::{Adaptive, RenderSettings, View};
 
     #[test]
     fn only_what_touches_the_film_drops_it() {
@@ -95,6 +104,19 @@ mod tests {
             with(|j| j.settings.isa = Some(Isa::Portable)),
             Change::Scene
         );
+        let mut least_error = job.clone();
+        least_error.settings.adaptive = Some(Adaptive {
+            batch: 32,
+            tolerance: 0.05,
+            goal: AdaptiveGoal::LeastError,
+            exposure: 0.0,
+        });
+        for (end, change) in [(64, Change::Continue), (65, Change::Film)] {
+            least_error.settings.stop.samples_per_pixel = Some(end);
+            let mut longer = least_error.clone();
+            longer.settings.stop.samples_per_pixel = Some(128);
+            assert_eq!(Change::between(&least_error, &longer), change);
+        }
         let mut standard = job.clone();
         standard.settings.bvh.quality = BvhQuality::Standard;
         assert_eq!(Change::between(&standard, &job), Change::Continue);

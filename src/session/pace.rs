@@ -35,13 +35,12 @@ pub(super) fn finer_step(pixels: f64, rate: f64, shown: u32) -> Option<u32> {
 
 /// The number of samples per pixel at which the next pass ends.
 ///
-/// `done` is what every open pixel has, `last` the samples and seconds of the last pass. Adaptive
-/// sampling must look at every multiple of its batch; nothing goes beyond the stop rule. With
-/// `seconds_left` until a time limit the pass is made to fit, so that it need not be cut: then all
-/// pixels end with the same number of samples, and the picture can be made again.
+/// `done` is what every open pixel has, `bound` the number that must not be passed, `last` the samples
+/// and seconds of the last pass. With `seconds_left` until a time limit the pass is made to fit, so
+/// that it need not be cut: then all pixels end with the same number of samples, and the picture can
+/// be made again.
 pub(super) fn next_target(
-    settings: &RenderSettings,
-    done: u32,
+    (done, bound): (u32, u32),
     last: Option<(u32, f64)>,
     seconds_left: Option<f64>,
 ) -> u32 {
@@ -56,12 +55,8 @@ pub(super) fn next_target(
     let fitting = last.zip(seconds_left).map(|((samples, seconds), left)| {
         (left / seconds.max(1e-6) * f64::from(samples)).max(1.0) as u32
     });
-    let mut target = done.saturating_add(step.min(fitting.unwrap_or(u32::MAX)));
-    if let Some(adaptive) = settings.adaptive {
-        let batch = adaptive.batch.max(1);
-        target = target.min((done / batch + 1).saturating_mul(batch));
-    }
-    target.min(settings.stop.samples_per_pixel.unwrap_or(u32::MAX))
+    let step = step.min(fitting.unwrap_or(u32::MAX));
+    done.saturating_add(step).min(bound)
 }
 
 /// What [`eta_seconds`] looks at.
@@ -104,7 +99,6 @@ pub(super) fn eta_seconds(settings: &RenderSettings, progress: &Progress) -> Opt
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::settings::{Adaptive, AdaptiveRule, StopRule};
 
     #[test]
     fn previews_stay_in_their_budget() {
@@ -123,27 +117,14 @@ mod tests {
     }
 
     #[test]
-    fn passes_grow_to_their_aim_and_never_skip_a_decision_or_the_end() {
-        let mut settings = RenderSettings {
-            stop: StopRule {
-                samples_per_pixel: Some(100),
-                ..StopRule::default()
-            },
-            ..RenderSettings::default()
-        };
-        assert_eq!(next_target(&settings, 0, None, None), 1);
-        assert_eq!(next_target(&settings, 1, Some((1, 0.001)), None), 3);
-        assert_eq!(next_target(&settings, 8, Some((8, 1.0)), None), 12);
-        assert_eq!(next_target(&settings, 90, Some((64, 0.01)), None), 100);
-        assert_eq!(next_target(&settings, 8, Some((8, 0.1)), Some(0.05)), 12);
-        assert_eq!(next_target(&settings, 8, Some((8, 0.1)), Some(0.0)), 9);
-        settings.adaptive = Some(Adaptive {
-            batch: 32,
-            tolerance: 0.05,
-            rule: AdaptiveRule::Course,
-        });
-        assert_eq!(next_target(&settings, 30, Some((64, 0.01)), None), 32);
-        assert_eq!(next_target(&settings, 32, Some((64, 0.01)), None), 64);
+    fn passes_grow_to_their_aim_and_never_beyond_their_bound() {
+        assert_eq!(next_target((0, 100), None, None), 1);
+        assert_eq!(next_target((1, 100), Some((1, 0.001)), None), 3);
+        assert_eq!(next_target((8, 100), Some((8, 1.0)), None), 12);
+        assert_eq!(next_target((90, 100), Some((64, 0.01)), None), 100);
+        assert_eq!(next_target((8, 100), Some((8, 0.1)), Some(0.05)), 12);
+        assert_eq!(next_target((8, 100), Some((8, 0.1)), Some(0.0)), 9);
+        assert_eq!(next_target((30, 32), Some((64, 0.01)), None), 32);
     }
 
     #[test]

@@ -34,8 +34,9 @@ pub(super) struct Stop<'a> {
     pub(super) when_due: &'a (dyn Fn() -> bool + Sync),
 }
 
-/// Takes samples until every open pixel of `film` has `target` of them or `stop` says so. The film is whole at any time: what a stopped pass left out,
-/// the next one takes up. Returns the work done and whether every open pixel has reached `target`.
+/// Takes samples until every pixel of `film` has `target` of them or its own limit, or until `stop`
+/// says so. The film is whole at any time: what a stopped pass left out, the next one takes up.
+/// Returns the work done and whether every open pixel has reached `target`.
 pub(super) fn render_pass(
     workers: &Workers,
     tracer: &PathTracer<'_>,
@@ -84,14 +85,19 @@ fn next_batch(
     ids: &mut Vec<PathId>,
 ) -> bool {
     ids.clear();
-    let counts = || (tile.clusters(cluster_size)).map(|cluster| (cluster, fewest(tile, &cluster)));
-    let first = counts()
-        .filter_map(|(_, count)| count)
-        .min()
-        .unwrap_or(target);
+    let pixels = |cluster: &Cluster| {
+        let inside = (cluster.pixels()).filter(|&[x, y]| tile.area().contains(x, y));
+        inside.map(|[x, y]| &tile.pixels()[tile.index(x, y)])
+    };
+    let open: Vec<Cluster> = (tile.clusters(cluster_size))
+        .filter(|cluster| pixels(cluster).any(|pixel| !pixel.is_closed()))
+        .collect();
+    let counts = open.iter().flat_map(pixels).filter(|p| !p.is_closed());
+    let first = counts.map(PixelStats::count).min().unwrap_or(target);
     for sample in first..target {
-        let lacking = counts().filter(|(_, count)| count.is_some_and(|count| count <= sample));
-        for (cluster, _) in lacking {
+        // Paths of pixels that have the sample are needed as long as others share theirs.
+        let lacks = |cluster: &&Cluster| pixels(cluster).any(|pixel| pixel.lacks(sample));
+        for cluster in open.iter().filter(lacks) {
             ids.extend(cluster.pixels().map(|pixel| PathId { pixel, sample }));
             if ids.len() >= size {
                 return true;
@@ -99,17 +105,6 @@ fn next_batch(
         }
     }
     !ids.is_empty()
-}
-
-/// The fewest samples that an open pixel of `cluster` has that lies in `tile`; `None` when all are
-/// closed. Paths of closed pixels and of pixels outside are needed as long as others share theirs.
-fn fewest(tile: &Tile, cluster: &Cluster) -> Option<u32> {
-    (cluster.pixels())
-        .filter(|&[x, y]| tile.area().contains(x, y))
-        .map(|[x, y]| &tile.pixels()[tile.index(x, y)])
-        .filter(|pixel| !pixel.is_closed())
-        .map(PixelStats::count)
-        .min()
 }
 
 /// Adds the samples to the pixels of `tile` that lack them.
@@ -120,9 +115,8 @@ fn add_batch(tile: &mut Tile, arrays: &WorkerArrays) {
             continue;
         }
         let index = tile.index(x, y);
-        let pixel = &mut tile.pixels_mut()[index];
-        if !pixel.is_closed() && pixel.count() == id.sample {
-            pixel.add(radiance);
+        if tile.pixels()[index].takes(id.sample) {
+            tile.add(index, radiance);
         }
     }
 }

@@ -81,15 +81,15 @@ impl Caption<'_> {
             ))
         };
         let noise = (settings.view == View::Noise).then(|| {
+            let (rows, region) = (film.rows(), film.region());
             assemble(
                 workers,
                 film,
                 (width, height),
                 |_, _| 0.0,
-                |pixel, _, _| {
-                    pixel
-                        .relative_squared_error()
-                        .map_or(1.0, |e| e.sqrt() as f32)
+                |_, x, y| {
+                    let pooled = rows.pooled((x - region.x) as usize, (y - region.y) as usize);
+                    pooled.map_or(1.0, |pooled| pooled.relative_error() as f32)
                 },
             )
         });

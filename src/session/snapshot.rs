@@ -41,7 +41,7 @@ pub struct Snapshot {
     pub pixels: Vec<Rgb>,
     /// Samples per pixel.
     pub samples: SampleCounts,
-    /// Estimated relative error per pixel, for [`View::Noise`] only.
+    /// Estimated relative error per pixel, pooled over 3×3 pixels, for [`View::Noise`] only.
     pub noise: Option<Vec<f32>>,
     /// Mean samples per pixel.
     pub samples_mean: f64,
@@ -51,7 +51,7 @@ pub struct Snapshot {
     pub seconds: f64,
     /// Processor time that the workers spent on these samples.
     pub cpu_seconds: f64,
-    /// Root of the relative squared error that the sample variance predicts.
+    /// Root of the relative squared error that the samples tell, see [`crate::film::Film::summary`].
     pub relative_error: Option<f64>,
     /// From where.
     pub camera: Camera,

@@ -74,7 +74,7 @@ pub struct SessionStatus {
     pub build_seconds: f64,
     /// The hierarchy of this scene.
     pub tree: TreeState,
-    /// Root of the relative squared error that the sample variance predicts.
+    /// Root of the relative squared error that the samples tell, see [`crate::film::Film::summary`].
     pub relative_error: Option<f64>,
     /// Seconds until the active stop rule ends the render; `None` until it means something.
     pub eta_seconds: Option<f64>,

@@ -2,7 +2,7 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use super::RenderJob;
-use super::adaptive::close_pixels;
+use super::adaptive::Schedule;
 use super::pass::{Stop, render_pass};
 use super::workers::Workers;
 use crate::camera::RayCamera;
@@ -11,7 +11,7 @@ use crate::film::Film;
 use crate::image::Image;
 use crate::integrator::{PathCounts, PathSettings, PathTracer};
 use crate::scene::{PrepareSettings, PreparedScene, prepare};
-use crate::settings::{Mode, RenderSettings};
+use crate::settings::{Adaptive, Mode, RenderSettings};
 
 /// A scene ready to be rendered over and over by the thread that asks: for measuring, not for
 /// windows. The pictures are those of a [`super::RenderSession`], bit for bit.
@@ -29,9 +29,7 @@ pub struct Workbench {
 pub struct Exposure {
     settings: RenderSettings,
     film: Film,
-    /// Samples that every open pixel has.
-    samples: u32,
-    all_closed: bool,
+    schedule: Schedule,
     counts: PathCounts,
     cpu_seconds: f64,
     wall_seconds: f64,
@@ -75,15 +73,21 @@ impl Workbench {
 
     /// An empty picture of the job's settings, but for `mode` and `seed`.
     pub fn begin(&self, mode: Mode, seed: u64) -> Exposure {
+        self.begin_as(mode, self.settings.adaptive, seed)
+    }
+
+    /// The same with another kind of adaptive sampling, or none.
+    pub fn begin_as(&self, mode: Mode, adaptive: Option<Adaptive>, seed: u64) -> Exposure {
+        let settings = RenderSettings {
+            mode,
+            adaptive,
+            seed,
+            ..self.settings.clone()
+        };
         Exposure {
-            film: Film::new(self.settings.active_region()),
-            settings: RenderSettings {
-                mode,
-                seed,
-                ..self.settings.clone()
-            },
-            samples: 0,
-            all_closed: false,
+            film: Film::with_replicates(settings.active_region(), settings.replicates()),
+            settings,
+            schedule: Schedule::default(),
             counts: PathCounts::default(),
             cpu_seconds: 0.0,
             wall_seconds: 0.0,
@@ -91,7 +95,7 @@ impl Workbench {
     }
 
     /// Takes samples until each pixel of `exposure` has `samples` of them (adaptive sampling may
-    /// close some before) or until `stop`, which is asked before each batch of paths. False when
+    /// close some before, or make that the mean; then `samples` are multiples of its batch) or until `stop`, which is asked before each batch of paths. False when
     /// stopped; some pixels may then have more samples than others.
     pub fn advance(
         &self,
@@ -104,17 +108,16 @@ impl Workbench {
             &self.camera,
             PathSettings::from(&exposure.settings),
         );
-        let adaptive = exposure.settings.adaptive;
-        while exposure.samples < samples && !exposure.all_closed {
-            let target = match adaptive {
-                Some(adaptive) => next_decision(exposure.samples, adaptive.batch).min(samples),
-                None => samples,
-            };
+        let settings = &mut exposure.settings;
+        settings.stop.samples_per_pixel = Some(samples);
+        let schedule = &mut exposure.schedule;
+        while !schedule.all_closed() && !schedule.has_all_samples(settings) {
+            let target = schedule.bound(settings);
             let (started, busy) = (Instant::now(), self.workers.cpu_seconds());
             let (counts, is_whole) = render_pass(
                 &self.workers,
                 &tracer,
-                exposure.settings.integrator,
+                settings.integrator,
                 &mut exposure.film,
                 target,
                 Stop {
@@ -128,20 +131,10 @@ impl Workbench {
             if !is_whole {
                 return false;
             }
-            exposure.samples = target;
-            if let Some(adaptive) = adaptive.filter(|a| target.is_multiple_of(a.batch.max(1))) {
-                exposure.all_closed =
-                    close_pixels(&mut exposure.film, &adaptive, exposure.settings.mode);
-            }
+            schedule.arrive(target, &mut exposure.film, settings);
         }
         true
     }
-}
-
-/// The number of samples after `done` at which adaptive sampling decides.
-fn next_decision(done: u32, batch: u32) -> u32 {
-    let batch = batch.max(1);
-    (done / batch).saturating_add(1).saturating_mul(batch)
 }
 
 impl Exposure {
@@ -160,9 +153,14 @@ impl Exposure {
         Image::from_pixels(width, height, pixels)
     }
 
-    /// Samples that every pixel has that is not closed by adaptive sampling.
+    /// Samples that every pixel has that adaptive sampling does not hold back.
     pub fn samples_per_pixel(&self) -> u32 {
-        self.samples
+        self.schedule.done()
+    }
+
+    /// Root of the relative squared error that the samples themselves tell.
+    pub fn relative_error(&self) -> Option<f64> {
+        self.film.summary().relative_error
     }
 
     /// Work done so far.
@@ -190,7 +188,7 @@ mod tests {
     use crate::camera::Camera;
     use crate::geometry::TraceCounts;
     use crate::scene::{cornell_box, initial_camera};
-    use crate::settings::{Adaptive, AdaptiveRule, CameraRule};
+    use crate::settings::{AdaptiveGoal, CameraRule};
 
     fn job(settings: RenderSettings) -> RenderJob {
         let scene = cornell_box("box").finish();
@@ -263,7 +261,8 @@ mod tests {
         let adaptive = Adaptive {
             batch: 8,
             tolerance: 10.0,
-            rule: AdaptiveRule::Course,
+            goal: AdaptiveGoal::Course,
+            exposure: 0.0,
         };
         let bench = Workbench::new(&job(RenderSettings {
             adaptive: Some(adaptive),

@@ -15,5 +15,6 @@ mod verdict;
 pub use bootstrap::{FEWEST_RUNS, bootstrap_interval};
 pub use curve::{Curve, Level, LevelFigures, Run};
 pub use power_law::{PowerLaw, Reach, WeightedPoint};
+pub use quantile::student_975;
 pub use reference::Reference;
 pub use verdict::{Outcome, Verdict};

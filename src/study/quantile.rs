@@ -8,7 +8,7 @@ const STUDENT_975: [f64; 30] = [
 const NORMAL_975: f64 = 1.959_964;
 
 /// Half width of a 95 % interval in standard errors, for `degrees` of freedom (at least 1).
-pub(super) fn student_975(degrees: usize) -> f64 {
+pub fn student_975(degrees: usize) -> f64 {
     if let Some(tabled) = STUDENT_975.get(degrees.saturating_sub(1)) {
         return *tabled;
     }

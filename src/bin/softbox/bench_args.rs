@@ -5,6 +5,7 @@ use clap::Args;
 use softbox::settings::{Mode, RenderSettings, View};
 
 use crate::args::Reporting;
+use crate::contender::Contender;
 use crate::job::Job;
 use crate::settings_args::SettingsArgs;
 use crate::values;
@@ -31,15 +32,15 @@ pub(crate) struct BenchArgs {
     /// Runs that differ in their seed; intervals need at least 5
     #[arg(long, value_name = "N", default_value = "5", value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub(crate) seeds: u32,
-    /// Estimators to compare, the first with each of the others
+    /// Estimators to compare, the first with each of the others; a mode, or a mode with adaptive
+    /// sampling such as best+even or best+least-error
     #[arg(
         long,
-        value_name = "MODE,MODE",
+        value_name = "MODE[+GOAL],…",
         value_delimiter = ',',
-        value_parser = values::named::<Mode>,
         conflicts_with = "mode"
     )]
-    pub(crate) compare: Vec<Mode>,
+    pub(crate) compare: Vec<Contender>,
     /// Picture to score against (.exr, .hdr or .pfm); else one is made by another estimator
     #[arg(long, value_name = "FILE")]
     pub(crate) reference: Option<PathBuf>,
@@ -77,10 +78,9 @@ impl BenchArgs {
         if self.reference.is_some() && self.scenes.len() != 1 {
             return Err("a reference belongs to one scene: name that scene".to_owned());
         }
-        let mut modes = self.compare.clone();
-        modes.sort_by_key(|&mode| mode as u8);
-        modes.dedup();
-        if modes.len() < self.compare.len() {
+        let compared = self.compare.iter().enumerate();
+        let mut repeated = compared.filter(|(i, name)| self.compare[..*i].contains(name));
+        if repeated.next().is_some() {
             return Err("--compare names a mode twice".to_owned());
         }
         crate::args::check_region(&settings)?;
@@ -108,9 +108,9 @@ impl BenchArgs {
     }
 
     /// What is measured, at least one.
-    pub(crate) fn modes(&self) -> Vec<Mode> {
+    pub(crate) fn contenders(&self) -> Vec<Contender> {
         if self.compare.is_empty() {
-            vec![self.render_settings().mode]
+            vec![Contender::of(&self.render_settings())]
         } else {
             self.compare.clone()
         }
@@ -118,9 +118,11 @@ impl BenchArgs {
 
     /// The estimator of a reference that is made here: not the one that is measured.
     pub(crate) fn chosen_reference_mode(&self) -> Mode {
-        let own = match self.modes()[..] {
-            [Mode::Importance] => Mode::Best,
-            _ => Mode::Importance,
+        let is_importance = |contender: &Contender| contender.mode == Mode::Importance;
+        let own = if self.contenders().iter().all(is_importance) {
+            Mode::Best
+        } else {
+            Mode::Importance
         };
         self.reference_mode.unwrap_or(own)
     }

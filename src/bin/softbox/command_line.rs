@@ -4,7 +4,7 @@ use std::path::Path;
 
 use glam::DVec3;
 use softbox::display::{DisplaySettings, ToneCurve};
-use softbox::settings::{AdaptiveRule, CameraRule, RenderSettings};
+use softbox::settings::{AdaptiveGoal, CameraRule, RenderSettings};
 
 use crate::job::{CameraChoice, FieldOfView, Job};
 use crate::values::name_of;
@@ -33,6 +33,7 @@ pub(crate) fn words(job: &Job) -> Vec<String> {
     }
     line.maybe("--rate-picture", job.rate_picture.as_deref().map(operand));
     add_settings(&mut line, &job.settings);
+    add_adaptive(&mut line, &job.settings, job.display.exposure);
     add_camera(&mut line, &job.camera, job.settings.course_compatible);
     add_display(&mut line, &job.display, job.settings.course_compatible);
     line.maybe("--environment", job.environment.as_deref().map(operand));
@@ -89,23 +90,6 @@ fn add_settings(line: &mut Line, settings: &RenderSettings) {
     line.option("--seed", s.seed);
     line.flag("--only-last-bounce", s.only_last_bounce);
     line.flag("--course-compatible", s.course_compatible);
-    if let Some(adaptive) = s.adaptive {
-        line.option(
-            "--adaptive",
-            format!("{},{}", adaptive.batch, adaptive.tolerance),
-        );
-        let own = if s.course_compatible {
-            AdaptiveRule::Course
-        } else {
-            AdaptiveRule::default()
-        };
-        line.unless_default(
-            "--adaptive-rule",
-            adaptive.rule,
-            own,
-            name_of(adaptive.rule),
-        );
-    }
     line.unless_default("--view", s.view, d.view, name_of(s.view));
     line.unless_default(
         "--integrator",
@@ -125,6 +109,23 @@ fn add_settings(line: &mut Line, settings: &RenderSettings) {
     line.unless_default("--bvh-quality", quality, d.bvh.quality, name_of(quality));
     line.maybe("--isa", s.isa);
     line.unless_default("--threads", s.threads, d.threads, s.threads.to_string());
+}
+
+fn add_adaptive(line: &mut Line, settings: &RenderSettings, exposure: f32) {
+    let Some(adaptive) = settings.adaptive else {
+        return;
+    };
+    let numbers = format!("{},{}", adaptive.batch, adaptive.tolerance);
+    line.option("--adaptive", numbers);
+    let own = if settings.course_compatible {
+        AdaptiveGoal::Course
+    } else {
+        AdaptiveGoal::default()
+    };
+    let goal = adaptive.goal;
+    line.unless_default("--adaptive-goal", goal, own, name_of(goal));
+    let (dark, text) = (adaptive.exposure, adaptive.exposure.to_string());
+    line.unless_default("--adaptive-exposure", dark, exposure, text);
 }
 
 fn add_camera(line: &mut Line, camera: &CameraChoice, course_compatible: bool) {

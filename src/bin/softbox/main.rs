@@ -6,6 +6,7 @@ mod bench_args;
 mod bench_rays;
 mod command_line;
 mod compare;
+mod contender;
 mod course_args;
 mod exit;
 mod info;

@@ -15,7 +15,7 @@ use anyhow::Context;
 use anyhow::anyhow;
 use softbox::io::picture::{PictureFormat, check_writable, write_linear, write_png};
 use softbox::session::{RenderJob, RenderSession, SessionOptions, SessionStatus, Snapshot};
-use softbox::settings::{RenderSettings, StopRule, View};
+use softbox::settings::{AdaptiveGoal, RenderSettings, StopRule, View};
 
 use crate::args::Reporting;
 use crate::command_line::command_line;
@@ -220,10 +220,12 @@ fn write_outputs(
 }
 
 /// The job that ends where this picture ended: after its samples, not after a time that depends on
-/// the machine, an estimate or Ctrl+C. Adaptive sampling has no such number and keeps its rule.
+/// the machine, an estimate or Ctrl+C. Least error has no such number and keeps its rule.
 fn repeatable(job: &Job, snapshot: &Snapshot) -> Job {
     let mut job = job.clone();
-    if job.settings.adaptive.is_none() && !job.settings.view.is_first_hit() {
+    let goal = job.settings.adaptive.map(|adaptive| adaptive.goal);
+    let is_counted = goal != Some(AdaptiveGoal::LeastError) && !job.settings.view.is_first_hit();
+    if is_counted {
         job.settings.stop = StopRule {
             samples_per_pixel: Some(snapshot.samples_max),
             ..StopRule::default()

@@ -7,7 +7,7 @@ use softbox::display::{DisplaySettings, ToneCurve};
 use softbox::image::Region;
 use softbox::math::Isa;
 use softbox::settings::{
-    Adaptive, AdaptiveRule, CameraRule, IntegratorKind, MaxDepth, Mode, RenderSettings, Reuse,
+    Adaptive, AdaptiveGoal, CameraRule, IntegratorKind, MaxDepth, Mode, RenderSettings, Reuse,
     StopRule, View,
 };
 
@@ -17,7 +17,7 @@ use crate::values;
 /// When a render ends, whichever comes first.
 #[derive(Args, Clone, Debug, Default, PartialEq)]
 pub(crate) struct StopArgs {
-    /// Samples for each pixel (the most of them, with adaptive sampling)
+    /// Samples for each pixel; with adaptive sampling the most of them, or the mean for least error
     #[arg(short = 's', long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) spp: Option<u32>,
     /// Stop after this many seconds
@@ -66,12 +66,16 @@ pub(crate) struct SettingsArgs {
     /// Path tracer: wavefront, or the slow and plain reference
     #[arg(long, value_parser = values::named::<IntegratorKind>)]
     pub(crate) integrator: Option<IntegratorKind>,
-    /// Stop pixels early: samples between decisions and relative tolerance, such as 64,0.05
+    /// Adaptive sampling: samples between decisions and relative tolerance, such as 64,0.05
     #[arg(long, value_name = "BATCH,TOL", value_parser = values::batch_and_tolerance)]
     pub(crate) adaptive: Option<(u32, f32)>,
-    /// Rule of adaptive sampling: neighbourhood or course
-    #[arg(long, value_name = "RULE", value_parser = values::named::<AdaptiveRule>)]
-    pub(crate) adaptive_rule: Option<AdaptiveRule>,
+    /// What adaptive sampling is for: even (each pixel ends within the tolerance), least-error (the
+    /// least error for the samples, of which --spp is the mean), or course (its rule) [default: even]
+    #[arg(long, visible_alias = "adaptive-rule", value_name = "GOAL", value_parser = values::named::<AdaptiveGoal>)]
+    pub(crate) adaptive_goal: Option<AdaptiveGoal>,
+    /// Exposure at which adaptive sampling looks at dark pixels [default: that of --exposure]
+    #[arg(long, value_name = "STOPS", allow_hyphen_values = true, value_parser = values::finite)]
+    pub(crate) adaptive_exposure: Option<f32>,
     /// Seed of the random numbers [default: 0]
     #[arg(long, value_name = "N")]
     pub(crate) seed: Option<u64>,
@@ -174,17 +178,18 @@ impl SettingsArgs {
         settings
     }
 
-    /// Adaptive sampling with the rule that was asked for.
+    /// Adaptive sampling with the goal that was asked for.
     pub(crate) fn adaptive(&self, batch: u32, tolerance: f32) -> Adaptive {
         let own = if self.course_compatible {
-            AdaptiveRule::Course
+            AdaptiveGoal::Course
         } else {
-            AdaptiveRule::default()
+            AdaptiveGoal::default()
         };
         Adaptive {
             batch,
             tolerance,
-            rule: self.adaptive_rule.unwrap_or(own),
+            goal: self.adaptive_goal.unwrap_or(own),
+            exposure: self.adaptive_exposure.or(self.exposure).unwrap_or(0.0),
         }
     }
 

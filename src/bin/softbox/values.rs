@@ -125,7 +125,7 @@ fn list<T: std::str::FromStr>(text: &str) -> Result<Vec<T>, ()> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use softbox::settings::{AdaptiveRule, Mode, View};
+    use softbox::settings::{AdaptiveGoal, Mode, View};
 
     #[test]
     fn names_are_those_of_the_settings() {
@@ -136,7 +136,7 @@ mod tests {
         for view in View::ALL {
             assert_eq!(named(view.name()), Ok(view));
         }
-        assert_eq!(named("course"), Ok(AdaptiveRule::Course));
+        assert_eq!(named("course"), Ok(AdaptiveGoal::Course));
         assert!(named::<Mode>("worst").unwrap_err().contains("`best`"));
     }
 

@@ -1,6 +1,6 @@
 use std::time::Instant;
 
-use super::super::adaptive::close_pixels;
+use super::super::adaptive::Schedule;
 use super::super::pace::{Progress, eta_seconds, finer_step, next_target, preview_step};
 use super::super::preview::Preview;
 use super::super::publish::Caption;
@@ -31,12 +31,10 @@ pub(super) struct Picture {
     /// Processor time of the workers.
     cpu_seconds: f64,
     counts: PathCounts,
-    /// Samples that every open pixel has.
-    done: u32,
+    schedule: Schedule,
     last_pass: Option<(u32, f64)>,
     /// Seconds spent on the pass that is not complete yet.
     pass_seconds: f64,
-    all_closed: bool,
     /// The view of the first hit that was shown last is still right.
     first_hit_is_done: bool,
 }
@@ -54,9 +52,11 @@ impl Picture {
         let (width, height) = (settings.width, settings.height);
         let camera = RayCamera::new(&job.camera, width, height, scene.normalization());
         let region = settings.active_region();
-        let recycled = recycled.filter(|film| film.region() == region);
+        let replicates = settings.replicates();
+        let fits = |film: &Film| film.region() == region && film.replicates() == replicates;
+        let recycled = recycled.filter(fits);
         let film_is_clear = recycled.is_none();
-        let film = recycled.unwrap_or_else(|| Film::new(region));
+        let film = recycled.unwrap_or_else(|| Film::with_replicates(region, replicates));
         Self {
             job,
             generation,
@@ -68,10 +68,9 @@ impl Picture {
             seconds: 0.0,
             cpu_seconds: 0.0,
             counts: PathCounts::default(),
-            done: 0,
+            schedule: Schedule::default(),
             last_pass: None,
             pass_seconds: 0.0,
-            all_closed: false,
             first_hit_is_done: false,
         }
     }
@@ -195,11 +194,11 @@ impl Picture {
         if settings.view.is_first_hit() {
             return self.first_hit_is_done.then_some(StopReason::FirstHit);
         }
-        if self.all_closed {
+        if self.schedule.all_closed() {
             return Some(StopReason::Converged);
         }
         let stop = &settings.stop;
-        if stop.samples_per_pixel.is_some_and(|n| self.done >= n) {
+        if self.schedule.has_all_samples(settings) {
             return Some(StopReason::Samples);
         }
         if stop.seconds.is_some_and(|limit| self.seconds >= limit) {
@@ -211,7 +210,8 @@ impl Picture {
                 .is_some_and(|error| error <= aim)
         };
         // Two samples can agree by chance; the estimate means something from a few more on.
-        (self.done >= 8 && stop.relative_error.is_some_and(is_precise)).then_some(StopReason::Error)
+        (self.schedule.done() >= 8 && stop.relative_error.is_some_and(is_precise))
+            .then_some(StopReason::Error)
     }
 
     /// Takes samples until the end of the pass or until `stop`.
@@ -225,7 +225,9 @@ impl Picture {
         let settings = &self.job.settings;
         let tracer = PathTracer::new(scene, &self.camera, PathSettings::from(settings));
         let left = settings.stop.seconds.map(|limit| limit - self.seconds);
-        let target = next_target(settings, self.done, self.last_pass, left);
+        let done = self.schedule.done();
+        let bound = self.schedule.bound(settings);
+        let target = next_target((done, bound), self.last_pass, left);
         // The last pass was made to fit; one that takes much longer than foreseen is cut.
         let limit = left.map(|left| left + GRACE * settings.stop.seconds.unwrap_or(0.0) + GRACE);
         let is_due = || {
@@ -250,14 +252,8 @@ impl Picture {
         self.pass_seconds += elapsed;
         if is_complete {
             self.summary = self.film.summary();
-            self.last_pass = Some((target - self.done, std::mem::take(&mut self.pass_seconds)));
-            self.done = target;
-            if let Some(adaptive) = settings
-                .adaptive
-                .filter(|a| target.is_multiple_of(a.batch.max(1)))
-            {
-                self.all_closed = close_pixels(&mut self.film, &adaptive, settings.mode);
-            }
+            self.last_pass = Some((target - done, std::mem::take(&mut self.pass_seconds)));
+            self.schedule.arrive(target, &mut self.film, settings);
         }
     }
 

@@ -6,8 +6,9 @@ use softbox::bvh::{BvhKind, BvhQuality};
 use softbox::display::ToneCurve;
 use softbox::image::Region;
 use softbox::math::Isa;
-use softbox::settings::{AdaptiveRule, CameraRule, IntegratorKind, MaxDepth, Mode, View};
+use softbox::settings::{AdaptiveGoal, CameraRule, IntegratorKind, MaxDepth, Mode, View};
 
+use crate::bench_args::BenchArgs;
 use crate::job::FieldOfView;
 
 fn request(line: &str) -> Request {
@@ -88,7 +89,7 @@ fn every_letter_of_the_course_is_understood() {
     let s = &job.settings;
     let adaptive = s.adaptive.unwrap();
     assert_eq!((adaptive.batch, adaptive.tolerance), (64, 0.05));
-    assert_eq!(adaptive.rule, AdaptiveRule::Neighbourhood);
+    assert_eq!(adaptive.goal, AdaptiveGoal::Even);
     assert_eq!(
         job.rate_picture.as_deref(),
         Some(Path::new("out/CBbunny_rate.png"))
@@ -113,7 +114,7 @@ fn every_letter_of_the_course_is_understood() {
         headless("softbox -o 1 -m 100 -p 10 20 30 40 --course-compatible -a 32 0.1 -f a.png x");
     assert!(!job.settings.only_last_bounce);
     assert_eq!(job.settings.region, Some(region(600 - 20 - 40)));
-    assert_eq!(job.settings.adaptive.unwrap().rule, AdaptiveRule::Course);
+    assert_eq!(job.settings.adaptive.unwrap().goal, AdaptiveGoal::Course);
     assert_eq!(job.display.tone_curve, ToneCurve::Course);
 }
 
@@ -165,7 +166,7 @@ fn render_takes_every_long_option() {
         (Some(9), Some(1.5))
     );
     assert_eq!(s.stop.relative_error, Some(0.01));
-    assert_eq!(s.adaptive.unwrap().rule, AdaptiveRule::Course);
+    assert_eq!(s.adaptive.unwrap().goal, AdaptiveGoal::Course);
     assert_eq!(
         (job.display.exposure, job.display.tone_curve),
         (-2.5, ToneCurve::Reinhard)
@@ -244,6 +245,9 @@ fn a_bench_of_error_takes_the_settings_of_a_render() {
         Request::Bench(bench) => bench,
         other => panic!("{line}: {other:?}"),
     };
+    let names = |args: &BenchArgs| -> Vec<String> {
+        args.contenders().iter().map(ToString::to_string).collect()
+    };
     let plain = bench("softbox bench");
     let settings = plain.render_settings();
     assert_eq!((settings.width, settings.height), (480, 360));
@@ -251,22 +255,23 @@ fn a_bench_of_error_takes_the_settings_of_a_render() {
         (plain.seeds, plain.spp.to_string().as_str()),
         (5, "1,2,4,8,16,32,64")
     );
-    assert_eq!(plain.modes(), [Mode::Best]);
+    assert_eq!(names(&plain), ["best"]);
     assert_eq!(plain.chosen_reference_mode(), Mode::Importance);
     assert_eq!(plain.chosen_reference_spp(), 1024);
 
     let line =
-        "softbox bench a.dae --compare importance,best -m 2 --size 32x24 --seed 9 -t 1 -s 2,8";
+        "softbox bench a.dae --compare importance,best+even -m 2 --size 32x24 --seed 9 -t 1 -s 2,8";
     let chosen = bench(line);
     let settings = chosen.render_settings();
     assert_eq!((settings.max_depth, settings.seed), (MaxDepth(2), 9));
     assert_eq!((settings.threads, settings.width), (1, 32));
-    assert_eq!(chosen.modes(), [Mode::Importance, Mode::Best]);
+    assert_eq!(names(&chosen), ["importance", "best+even"]);
     let other = bench("softbox bench --mode importance");
     assert_eq!(other.chosen_reference_mode(), Mode::Best);
 
     for (line, reason) in [
         ("softbox bench --compare best,best", "twice"),
+        ("softbox bench --compare best+even,best+odd", "odd"),
         (
             "softbox bench --mode best --compare best,hemisphere",
             "--mode",

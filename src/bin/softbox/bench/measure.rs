@@ -2,8 +2,10 @@ use std::time::Instant;
 
 use softbox::image::CompareError;
 use softbox::session::{Exposure, Workbench};
-use softbox::settings::Mode;
+use softbox::settings::RenderSettings;
 use softbox::study::{Curve, Reference, Run};
+
+use crate::contender::Contender;
 
 /// How much longer than its limit a measurement may take when the machine slows down on the way.
 const PATIENCE: f64 = 1.25;
@@ -11,16 +13,18 @@ const PATIENCE: f64 = 1.25;
 /// What is measured on one scene.
 #[derive(Debug)]
 pub(super) struct Plan<'a> {
-    pub(super) modes: &'a [Mode],
+    pub(super) contenders: &'a [Contender],
+    /// The settings that all share.
+    pub(super) settings: &'a RenderSettings,
     /// Numbers of samples, ascending.
     pub(super) levels: &'a [u32],
-    /// One run of each mode for each.
+    /// One run of each contender for each.
     pub(super) seeds: &'a [u64],
     /// Seconds on the wall for all runs together.
     pub(super) time_limit: Option<f64>,
 }
 
-/// The curve of each mode, in the order of the plan, as far as `stop` let it come. `on_step` is told
+/// The curve of each contender, in the order of the plan, as far as `stop` let it come. `on_step` is told
 /// the fraction that is done.
 ///
 /// # Errors
@@ -32,7 +36,7 @@ pub(super) fn measure(
     stop: &(dyn Fn() -> bool + Sync),
     on_step: &mut dyn FnMut(f64),
 ) -> Result<Vec<Curve>, CompareError> {
-    let mut curves = vec![Curve::default(); plan.modes.len()];
+    let mut curves = vec![Curve::default(); plan.contenders.len()];
     let begin = Instant::now();
     let seeds = plan.seeds.len() as f64;
     let mut levels = plan.levels;
@@ -46,9 +50,9 @@ pub(super) fn measure(
         // The first seed finds out how far all of them can go.
         let share = plan.time_limit.filter(|_| done == 0).map(|t| t / seeds);
         let mut exposures: Vec<Exposure> = plan
-            .modes
+            .contenders
             .iter()
-            .map(|&mode| bench.begin(mode, seed))
+            .map(|c| bench.begin_as(c.mode, c.adaptive(plan.settings), seed))
             .collect();
         let started = Instant::now();
         for (index, &level) in levels.iter().enumerate() {

@@ -104,7 +104,7 @@ pub(super) fn make(
 ) -> Option<(Reference, ReferenceFacts)> {
     let (mode, seed) = (recipe.mode, recipe.seed.wrapping_add(SEEDS));
     let half = recipe.samples.div_ceil(2);
-    let mut first = bench.begin(mode, seed);
+    let mut first = bench.begin_as(mode, None, seed);
     let started = Instant::now();
     let mut target = 0;
     while target < half {
@@ -120,7 +120,7 @@ pub(super) fn make(
         target = next;
         on_step(0.5 * f64::from(target) / f64::from(half));
     }
-    let mut second = bench.begin(mode, seed.wrapping_add(1));
+    let mut second = bench.begin_as(mode, None, seed.wrapping_add(1));
     while second.samples_per_pixel() < target {
         let next = next_step(second.samples_per_pixel(), half).min(target);
         if !bench.advance(&mut second, next, recipe.stop) {

@@ -1,11 +1,11 @@
 use serde::Serialize;
 use softbox::math::Isa;
-use softbox::settings::Mode;
 use softbox::study::{Curve, LevelFigures, PowerLaw, Reach, Verdict};
 
 use super::reference::ReferenceFacts;
 use crate::bench_args::BenchArgs;
 use crate::command_line::command_line;
+use crate::contender::Contender;
 use crate::job::Job;
 
 /// Errors that the seconds are told for.
@@ -48,7 +48,7 @@ pub(super) struct SceneReport {
 /// The curve of one mode.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(super) struct Method {
-    pub(super) mode: &'static str,
+    pub(super) mode: String,
     pub(super) levels: Vec<LevelFigures>,
     /// relMSE against processor seconds.
     pub(super) power_law: Option<PowerLaw>,
@@ -59,8 +59,8 @@ pub(super) struct Method {
 /// Two modes side by side.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(super) struct Comparison {
-    pub(super) mode: &'static str,
-    pub(super) against: &'static str,
+    pub(super) mode: String,
+    pub(super) against: String,
     #[serde(flatten)]
     pub(super) verdict: Verdict,
 }
@@ -70,19 +70,19 @@ impl SceneReport {
     pub(super) fn new(
         args: &BenchArgs,
         facts: Facts<'_>,
-        modes: &[Mode],
+        contenders: &[Contender],
         curves: &[Curve],
     ) -> Option<Self> {
         if curves.iter().all(|curve| curve.levels.is_empty()) {
             return None;
         }
         let settings = &facts.job.settings;
-        let named = || modes.iter().map(|mode| mode.name()).zip(curves);
+        let named = || contenders.iter().map(Contender::to_string).zip(curves);
         let methods = named().map(|(mode, curve)| Method::new(mode, curve));
         let against = named().skip(1).filter_map(|(name, other)| {
             let verdict = Verdict::between(&curves[0], other)?;
             Some(Comparison {
-                mode: modes[0].name(),
+                mode: contenders[0].to_string(),
                 against: name,
                 verdict,
             })
@@ -118,7 +118,7 @@ impl SceneReport {
 }
 
 impl Method {
-    fn new(mode: &'static str, curve: &Curve) -> Self {
+    fn new(mode: String, curve: &Curve) -> Self {
         let power_law = curve.power_law();
         let measured = curve.measured_errors();
         let reach = |target| power_law?.reach(target, measured?);
@@ -137,7 +137,7 @@ fn command(args: &BenchArgs, job: &Job) -> String {
     let rest = render.strip_prefix("softbox ").unwrap_or(&render);
     let mut line = format!("softbox bench {rest}");
     if !args.compare.is_empty() {
-        let modes: Vec<&str> = args.compare.iter().map(|mode| mode.name()).collect();
+        let modes: Vec<String> = args.compare.iter().map(Contender::to_string).collect();
         // The two options exclude each other.
         line = line.replacen(&format!(" --mode {}", job.settings.mode.name()), "", 1);
         line += &format!(" --compare {}", modes.join(","));

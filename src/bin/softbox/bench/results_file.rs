@@ -46,7 +46,7 @@ pub(super) fn append(path: &Path, report: &SceneReport) -> Result<(), Failure> {
 
 fn headings() -> String {
     let mut line = format!(
-        "# {:<20} {:<11} {:>4} {:>2} {:>9} {:>7} {:>9} {:>9} {:>7} {:>9} {:>9} {:>9} {:>14}",
+        "# {:<20} {:<16} {:>4} {:>2} {:>9} {:>7} {:>9} {:>9} {:>7} {:>9} {:>9} {:>9} {:>14}",
         "scene",
         "mode",
         "spp",
@@ -79,7 +79,7 @@ fn row(report: &SceneReport, method: &Method) -> Option<String> {
         .power_law
         .map_or("-".to_owned(), |law| table::slope(&law).replace(' ', ""));
     let mut line = format!(
-        "  {:<20} {:<11} {:>4} {:>2} {:>9.4} {:>7.2} {:>9.3e} {:>9.3e} {:>7.4} {:>9} {:>9} {:>9} {slope:>14}",
+        "  {:<20} {:<16} {:>4} {:>2} {:>9.4} {:>7.2} {:>9.3e} {:>9.3e} {:>7.4} {:>9} {:>9} {:>9} {slope:>14}",
         report.scene,
         method.mode,
         level.samples_per_pixel,

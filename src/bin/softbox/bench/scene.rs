@@ -43,8 +43,8 @@ pub(super) fn measure(
         camera,
         settings: settings.clone(),
     });
-    let modes = args.modes();
-    let mut first_pass = bench.begin(modes[0], settings.seed);
+    let contenders = args.contenders();
+    let mut first_pass = bench.begin_as(contenders[0].mode, None, settings.seed);
     if !bench.advance(&mut first_pass, 1, stop) {
         return Ok(None);
     }
@@ -70,7 +70,8 @@ pub(super) fn measure(
         .map(|i| settings.seed.wrapping_add(i))
         .collect();
     let plan = Plan {
-        modes: &modes,
+        contenders: &contenders,
+        settings: &settings,
         levels: args.spp.as_slice(),
         seeds: &seeds,
         time_limit: args.time_limit,
@@ -91,7 +92,7 @@ pub(super) fn measure(
         reference: reference_facts,
         is_complete: !stop(),
     };
-    Ok(SceneReport::new(args, facts, &modes, &curves))
+    Ok(SceneReport::new(args, facts, &contenders, &curves))
 }
 
 fn standing(fraction: f64, begin: Instant, samples: u32) -> Standing {

@@ -54,7 +54,7 @@ fn write_reference(out: &mut impl Write, report: &SceneReport) -> Result<()> {
 fn write_method(out: &mut impl Write, method: &Method) -> Result<()> {
     writeln!(
         out,
-        "  {:<11} {:>5} {:>5} {:>9} {:>7} {:>10} {:>10} {:>10}  {:<23}  efficiency",
+        "  {:<16} {:>5} {:>5} {:>9} {:>7} {:>10} {:>10} {:>10}  {:<23}  efficiency",
         method.mode, "spp", "seeds", "cpu s", "Mray/s", "relMSE", "trimmed", "MSE", "mean ratio"
     )?;
     for level in &method.levels {
@@ -63,11 +63,11 @@ fn write_method(out: &mut impl Write, method: &Method) -> Result<()> {
     let Some(law) = method.power_law else {
         return Ok(());
     };
-    write!(out, "  {:<11} slope {}; relMSE", "", slope(&law))?;
+    write!(out, "  {:<16} slope {}; relMSE", "", slope(&law))?;
     let reaches: Vec<String> = method.seconds_to.iter().map(reach).collect();
     writeln!(out, "{}", reaches.join(","))?;
     if method.seconds_to.iter().any(|r| r.is_extrapolated) {
-        writeln!(out, "  {:<11} (~: outside of what was measured)", "")?;
+        writeln!(out, "  {:<16} (~: outside of what was measured)", "")?;
     }
     Ok(())
 }
@@ -103,7 +103,7 @@ fn write_level(out: &mut impl Write, level: &LevelFigures) -> Result<()> {
     };
     writeln!(
         out,
-        "  {:<11} {:>5} {:>5} {:>9.4} {:>7.2} {:>10.3e} {:>10.3e} {:>10.3e}  {ratio:<23}  {efficiency}",
+        "  {:<16} {:>5} {:>5} {:>9.4} {:>7.2} {:>10.3e} {:>10.3e} {:>10.3e}  {ratio:<23}  {efficiency}",
         "",
         level.samples_per_pixel,
         level.seeds,
@@ -117,7 +117,7 @@ fn write_level(out: &mut impl Write, level: &LevelFigures) -> Result<()> {
 
 fn sentence(comparison: &Comparison) -> String {
     let verdict = &comparison.verdict;
-    let (mode, against) = (comparison.mode, comparison.against);
+    let (mode, against) = (&comparison.mode, &comparison.against);
     let interval = verdict.interval.map_or_else(
         || format!("no interval below {FEWEST_RUNS} seeds"),
         |[low, high]| format!("95 %: {low:.3} to {high:.3}"),

@@ -46,7 +46,7 @@ fn report(levels: Vec<LevelFigures>) -> SceneReport {
             cpu_seconds: 1.0,
         },
         methods: vec![Method {
-            mode: Mode::Best.name(),
+            mode: Mode::Best.name().to_owned(),
             levels,
             power_law: Some(PowerLaw {
                 slope: -1.0,

@@ -37,7 +37,8 @@ fn unusual() -> Job {
             adaptive: Some(Adaptive {
                 batch: 64,
                 tolerance: 0.1 + 0.2,
-                rule: AdaptiveRule::Course,
+                goal: AdaptiveGoal::Course,
+                exposure: 1.5,
             }),
             seed: u64::MAX,
             course_compatible: false,
@@ -82,7 +83,7 @@ fn every_setting_survives_the_round_trip() {
     compatible.settings.course_compatible = true;
     compatible.display.tone_curve = ToneCurve::Srgb;
     if let Some(adaptive) = &mut compatible.settings.adaptive {
-        adaptive.rule = AdaptiveRule::Neighbourhood;
+        adaptive.goal = AdaptiveGoal::Even;
     }
     assert_eq!(job_of(&words(&compatible)), compatible);
     let viewer = Job::default();

@@ -4,6 +4,9 @@ use eframe::egui::{self, Grid, Ui};
 
 use crate::viewer::inspector::{PickInfo, PixelValues};
 
+/// Half the width of a 95 % interval in deviations that nine pixels tell together.
+const DEVIATIONS_95: f64 = 2.05;
+
 /// The lines of the inspector; blanks where there is nothing.
 pub(in crate::viewer) fn show(
     ui: &mut Ui,
@@ -50,7 +53,10 @@ fn pixel_lines(values: Option<&PixelValues>) -> [(&'static str, String); 5] {
             text(&|v| {
                 v.relative_error.map_or_else(
                     || v.samples.to_string(),
-                    |error| format!("{} (±{:.1} %)", v.samples, f64::from(error) * 100.0),
+                    |error| {
+                        let half_width = DEVIATIONS_95 * f64::from(error) * 100.0;
+                        format!("{} (95 %: ±{half_width:.1} %)", v.samples)
+                    },
                 )
             }),
         ),

@@ -3,7 +3,7 @@
 use eframe::egui::{self, DragValue, Slider, Ui};
 use softbox::bvh::{BvhKind, BvhQuality, BvhSettings};
 use softbox::settings::{
-    Adaptive, AdaptiveRule, IntegratorKind, MaxDepth, Mode, RenderSettings, Reuse,
+    Adaptive, AdaptiveGoal, IntegratorKind, MaxDepth, Mode, RenderSettings, Reuse,
 };
 
 use super::{choice, optional, row, section};
@@ -91,15 +91,18 @@ fn depth(ui: &mut Ui, depth: &mut MaxDepth) {
 }
 
 fn adaptive(ui: &mut Ui, adaptive: &mut Option<Adaptive>) {
-    let help =
-        "Stop each pixel when its 95 % confidence interval is narrow enough. Slightly biased.";
+    let help = "Take more samples where they are needed. The number is the half width of the 95 % \
+                confidence interval at which a pixel ends. Slightly biased.";
     let first = Adaptive {
         batch: 32,
         tolerance: 0.05,
-        rule: AdaptiveRule::default(),
+        goal: AdaptiveGoal::default(),
+        exposure: 0.0,
     };
     optional(ui, ("Adaptive", help), adaptive, first, |ui, adaptive| {
-        ui.add(
+        let has_tolerance = adaptive.goal != AdaptiveGoal::LeastError;
+        ui.add_enabled(
+            has_tolerance,
             Slider::new(&mut adaptive.tolerance, 0.001..=1.0)
                 .logarithmic(true)
                 .custom_formatter(|value, _| format!("{:.1} %", value * 100.0))
@@ -108,23 +111,39 @@ fn adaptive(ui: &mut Ui, adaptive: &mut Option<Adaptive>) {
         .accessible_name("Tolerance")
     });
     if let Some(adaptive) = adaptive {
+        adaptive_details(ui, adaptive);
+    }
+}
+
+fn adaptive_details(ui: &mut Ui, adaptive: &mut Adaptive) {
+    let help = "Even quality ends each pixel when it and its neighbours are within the tolerance. \
+                Least error spends the samples where they lessen the error of the picture most; \
+                their limit is a mean. Course ends each pixel by itself, as the course's program.";
+    choice(
+        ui,
+        ("   goal", help),
+        &mut adaptive.goal,
+        &AdaptiveGoal::ALL,
+        |goal| match goal {
+            AdaptiveGoal::Even => "even quality",
+            AdaptiveGoal::LeastError => "least error",
+            AdaptiveGoal::Course => "course",
+        },
+    );
+    row(
+        ui,
+        "   batch",
+        "Samples between two decisions.",
+        DragValue::new(&mut adaptive.batch).range(2..=4096),
+    );
+    if adaptive.goal == AdaptiveGoal::Even {
         row(
             ui,
-            "   batch",
-            "Samples between two decisions.",
-            DragValue::new(&mut adaptive.batch).range(2..=4096),
-        );
-        let rules = [AdaptiveRule::Neighbourhood, AdaptiveRule::Course];
-        let help = "Neighbourhood looks at all channels of 3×3 pixels; course at each pixel alone.";
-        choice(
-            ui,
-            ("   rule", help),
-            &mut adaptive.rule,
-            &rules,
-            |rule| match rule {
-                AdaptiveRule::Course => "course",
-                AdaptiveRule::Neighbourhood => "neighbourhood",
-            },
+            "   dark exposure",
+            "The exposure, in stops, at which noise in the dark must not be seen.",
+            DragValue::new(&mut adaptive.exposure)
+                .range(-20.0..=20.0)
+                .speed(0.1),
         );
     }
 }

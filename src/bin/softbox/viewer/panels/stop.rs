@@ -9,7 +9,7 @@ use super::{optional, section};
 /// The stop rules; whichever comes first.
 pub(in crate::viewer) fn show(ui: &mut Ui, stop: &mut StopRule) {
     section(ui, "Stop after", true, |ui| {
-        let help = "Samples per pixel; with adaptive sampling the most of them.";
+        let help = "Samples per pixel; with adaptive sampling the most of them, or their mean for least error.";
         let samples = &mut stop.samples_per_pixel;
         optional(ui, ("Samples", help), samples, 256, |ui, samples| {
             ui.add(DragValue::new(samples).range(1..=u32::MAX).speed(1.0))

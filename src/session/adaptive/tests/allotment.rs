@@ -1,0 +1,71 @@
+//! Least error: who gets the samples.
+
+use super::super::Schedule;
+use super::synthetic::{film_at_the_end, settings};
+use crate::film::{Film, PixelStats};
+use crate::sampling::Slot;
+use crate::settings::AdaptiveGoal;
+
+const WIDTH: u32 = 64;
+
+/// A picture whose left quarter is plain, the second one hardly noisy, the others four times as much.
+fn picture(budget: u32) -> Film {
+    let settings = settings(AdaptiveGoal::LeastError, budget);
+    film_at_the_end([WIDTH, 32], &settings, |x, numbers| {
+        let u = numbers.get_1d(0, Slot::Roulette);
+        let deviation = match x / (WIDTH / 4) {
+            0 => 0.0,
+            1 => 0.2,
+            _ => 0.8,
+        };
+        1.0 + deviation * (u - 0.5)
+    })
+}
+
+fn mean_count(film: &Film, columns: std::ops::Range<u32>) -> f64 {
+    let region = film.region();
+    let pixels = columns.clone().flat_map(|x| (0..32).map(move |y| (x, y)));
+    let counts = pixels.map(|(x, y)| {
+        film.pixel(region.x + x, region.y + y)
+            .map_or(0, PixelStats::count)
+    });
+    counts.map(f64::from).sum::<f64>() / f64::from(columns.len() as u32 * 32)
+}
+
+#[test]
+fn samples_follow_the_deviation_within_the_budget() {
+    let film = picture(512);
+    let mean = mean_count(&film, 0..WIDTH);
+    assert!((500.0..=512.0).contains(&mean), "{mean}");
+    let plain = mean_count(&film, 2..14);
+    assert!((63.0..=65.0).contains(&plain), "{plain}");
+    let (calm, noisy) = (mean_count(&film, 18..30), mean_count(&film, 34..62));
+    assert!((3.5..4.5).contains(&(noisy / calm)), "{calm} {noisy}");
+}
+
+/// What was given out does not depend on where the render was going to stop.
+#[test]
+fn a_raised_budget_goes_on_as_if_it_had_been_there() {
+    let settings = |budget| settings(AdaptiveGoal::LeastError, budget);
+    let mut schedule = Schedule::default();
+    let mut film = Film::new(crate::image::Region {
+        x: 0,
+        y: 0,
+        width: 8,
+        height: 8,
+    });
+    assert_eq!(schedule.bound(&settings(32)), 32);
+    for tile in film.tiles_mut() {
+        for index in 0..64 {
+            for sample in 0..64 {
+                tile.add(index, crate::color::Rgb::splat((sample % 3) as f32));
+            }
+        }
+    }
+    schedule.arrive(64, &mut film, &settings(64));
+    assert!(schedule.has_all_samples(&settings(64)));
+    assert!(!schedule.has_all_samples(&settings(128)));
+    schedule.arrive(schedule.bound(&settings(128)), &mut film, &settings(128));
+    assert!(!schedule.has_all_samples(&settings(128)));
+    assert_eq!(film.pixel(3, 3).map(PixelStats::limit), Some(128));
+}

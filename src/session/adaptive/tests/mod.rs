@@ -1,0 +1,3 @@
+mod allotment;
+mod coverage;
+mod synthetic;
