@@ -85,10 +85,27 @@ impl Rows {
     /// The 3×3 pixels about column `x` of row `y`, fewer at the border, together; `None` while the
     /// error of one is unknown.
     pub fn pooled(&self, x: usize, y: usize) -> Option<Pooled> {
+        self.pooled_where((x, y), |_, _| true)
+    }
+
+    /// The same for the four pixels at its sides: what they say is independent of its samples, since
+    /// pixels that share their light never touch ([`super::Cluster`]). `None` also where there are no
+    /// neighbours.
+    pub fn pooled_neighbours(&self, x: usize, y: usize) -> Option<Pooled> {
+        let pooled = self.pooled_where((x, y), |column, row| (column == x) != (row == y));
+        pooled.filter(|pooled| pooled.pixels > 0)
+    }
+
+    fn pooled_where(
+        &self,
+        (x, y): (usize, usize),
+        takes: impl Fn(usize, usize) -> bool,
+    ) -> Option<Pooled> {
         let (mut mean, mut per_sample, mut pixels) = ([0.0; 3], [0.0; 3], 0_usize);
         for row in y.saturating_sub(1)..(y + 2).min(self.height) {
-            let row = &self.pixels[row * self.width..][..self.width];
-            for pixel in &row[x.saturating_sub(1)..(x + 2).min(self.width)] {
+            let columns = x.saturating_sub(1)..(x + 2).min(self.width);
+            for column in columns.filter(|&column| takes(column, row)) {
+                let pixel = &self.pixels[row * self.width + column];
                 let error = pixel.per_sample?;
                 for c in 0..3 {
                     mean[c] += pixel.mean[c];
@@ -139,6 +156,8 @@ mod tests {
         // Half the difference of the halves is 1.
         assert_eq!(pooled.squared_error, [0.0, 0.0, 1.0]);
         assert_eq!(rows.pooled(0, 0).unwrap().pixels, 4);
+        let corner = rows.pooled_neighbours(0, 0).unwrap();
+        assert_eq!((corner.pixels, corner.mean[0]), (2, 3.5));
         assert_eq!(rows.pooled(69, 3).unwrap().pixels, 6);
     }
 }

@@ -10,7 +10,11 @@ const DARK_FLOOR: f64 = 0.5 / 255.0;
 /// asked when all open pixels have the same number of samples. Pixels that were ended are looked at
 /// again: what their neighbours have found since counts for them too.
 pub(super) fn decide(film: &mut Film, adaptive: &Adaptive, settings: &RenderSettings) {
-    let least = if settings.mode == Mode::Hemisphere { 256 } else { 64 };
+    let least = if settings.mode == Mode::Hemisphere {
+        256
+    } else {
+        64
+    };
     let floor = DARK_FLOOR * (-f64::from(adaptive.exposure)).exp2();
     let tolerance = f64::from(adaptive.tolerance);
     let replicates = (film.replicates(), independent_of_nine(settings));
@@ -50,10 +54,7 @@ pub(super) fn independent_of_nine(settings: &RenderSettings) -> usize {
 
 /// Half the width of the 95 % interval of the mean of a pixel, per channel. Each of the pooled pixels,
 /// as far as they are `independent`, has one degree of freedom less than replicates.
-pub(super) fn half_width_95(
-    pooled: &Pooled,
-    (replicates, independent): (u32, usize),
-) -> [f64; 3] {
+pub(super) fn half_width_95(pooled: &Pooled, (replicates, independent): (u32, usize)) -> [f64; 3] {
     let freedom = pooled.pixels.min(independent) * (replicates.max(2) as usize - 1);
     let quantile = student_975(freedom);
     pooled.squared_error.map(|e| quantile * e.sqrt())

@@ -14,7 +14,8 @@ const MOST_GROWTH: u32 = 4;
 /// open pixel has and the greatest that one shall have.
 ///
 /// Neyman 1934, "On the Two Different Aspects of the Representative Method": that makes the sum of
-/// the squared errors the least.
+/// the squared errors the least. The deviation is that of the neighbours: had the pixel's own samples a
+/// say, those that have not met their light would get fewer, and the picture would be too dark.
 pub(super) fn allot(film: &mut Film, mean: u32) -> (u32, u32) {
     let rows = film.rows();
     let places = || (0..rows.height()).flat_map(|y| (0..rows.width()).map(move |x| (x, y)));
@@ -60,7 +61,7 @@ struct Want {
 impl Want {
     fn new(rows: &Rows, (x, y): (usize, usize), mean: u32) -> Self {
         let has = rows.count(x, y);
-        let weight = rows.pooled(x, y).map_or(1.0, |pooled| {
+        let weight = rows.pooled_neighbours(x, y).map_or(1.0, |pooled| {
             pooled.relative_error() * f64::from(has).sqrt()
         });
         Self {

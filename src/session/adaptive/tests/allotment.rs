@@ -43,6 +43,26 @@ fn samples_follow_the_deviation_within_the_budget() {
     assert!((3.5..4.5).contains(&(noisy / calm)), "{calm} {noisy}");
 }
 
+/// Test F4 for least error: the own samples of a pixel have no say in their number.
+#[test]
+fn rare_light_is_not_given_up() {
+    let settings = settings(AdaptiveGoal::LeastError, 1024);
+    for p in [0.05, 0.01] {
+        let film = film_at_the_end([80, 80], &settings, |_, numbers| {
+            let u = numbers.get_1d(0, Slot::Roulette);
+            if u < p { 1.0 / p } else { 0.0 }
+        });
+        let pixels = film.tiles().iter().flat_map(|tile| tile.pixels());
+        let bias = pixels.map(|pixel| pixel.mean()[0]).sum::<f64>() / 6400.0 - 1.0;
+        // The noise of the picture's mean.
+        let deviation = ((1.0 / f64::from(p) - 1.0) / 900.0 / 6400.0).sqrt();
+        assert!(
+            bias.abs() < 0.002 + 3.0 * deviation,
+            "{p}: {bias} {deviation}"
+        );
+    }
+}
+
 /// What was given out does not depend on where the render was going to stop.
 #[test]
 fn a_raised_budget_goes_on_as_if_it_had_been_there() {
