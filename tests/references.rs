@@ -79,6 +79,7 @@ impl Reference {
             only_last_bounce: false,
             seed: 7,
             replicates,
+            reuse: 1,
         };
         let (pixels, counts) = picture(&self.scene, &self.camera, settings, SIZE, samples);
         assert_eq!(counts.invalid_samples, 0, "{}", self.name);

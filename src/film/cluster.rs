@@ -91,6 +91,25 @@ mod tests {
         }
     }
 
+    /// Whoever asks the pixels at its sides asks such as are independent.
+    #[test]
+    fn pixels_that_share_do_not_touch() {
+        let film = Film::new(Region {
+            x: 0,
+            y: 0,
+            width: 64,
+            height: 32,
+        });
+        for size in [2, 4, 8, 16] {
+            for cluster in (film.tiles().iter()).flat_map(|tile| tile.clusters(size)) {
+                let pixels: Vec<_> = cluster.pixels().collect();
+                for [x, y] in &pixels {
+                    assert!(!pixels.contains(&[x + 1, *y]) && !pixels.contains(&[*x, y + 1]));
+                }
+            }
+        }
+    }
+
     #[test]
     fn clusters_do_not_depend_on_the_region() {
         let clusters = |region| {

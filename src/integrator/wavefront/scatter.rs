@@ -79,11 +79,7 @@ impl Shade<'_, '_> {
         );
         let bits = L::bits(alive) & group.lanes;
         if group.guided.is_some() {
-            let scales = (cosine / pdf).to_array();
-            for lane in set_bits(receivers & bits) {
-                let id = self.paths.states[group.first + lane].id;
-                self.reuse.aim(id, scales[lane]);
-            }
+            self.aim(group.first, receivers & bits, &(cosine / pdf).to_array());
         }
         let nowhere = Vec3Lanes::splat(Vec3::ZERO);
         let (from, side) = if shares_emission {
@@ -98,6 +94,14 @@ impl Shade<'_, '_> {
             [origin, direction, throughput, from, side],
             pdf,
         );
+    }
+
+    /// Takes note of the scales with which those of `lanes` leave their receivers.
+    fn aim(&mut self, first: usize, lanes: u32, scales: &[f32; ROW]) {
+        for lane in set_bits(lanes) {
+            let id = self.paths.states[first + lane].id;
+            self.reuse.aim(id, scales[lane]);
+        }
     }
 
     #[inline(always)]

@@ -5,7 +5,9 @@ use crate::args::{Request, parse};
 use softbox::bvh::{BvhKind, BvhQuality, BvhSettings};
 use softbox::image::Region;
 use softbox::math::Isa;
-use softbox::settings::{Adaptive, CameraRule, IntegratorKind, MaxDepth, Mode, StopRule, View};
+use softbox::settings::{
+    Adaptive, CameraRule, IntegratorKind, MaxDepth, Mode, Reuse, StopRule, View,
+};
 
 fn job_of(words: &[String]) -> Job {
     match parse(words, None).unwrap() {
@@ -33,6 +35,7 @@ fn unusual() -> Job {
             max_depth: MaxDepth::INFINITE,
             only_last_bounce: true,
             mode: Mode::Hemisphere,
+            reuse: Reuse::ALL[4],
             integrator: IntegratorKind::Reference,
             adaptive: Some(Adaptive {
                 batch: 64,
