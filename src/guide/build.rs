@@ -1,7 +1,7 @@
 use glam::Vec3;
 
+use super::bundles::spheres;
 use super::cells::{CellTable, LEVELS, key, width};
-use super::clusters::spheres;
 use super::{Guide, Lobes};
 use crate::math::Aabb;
 

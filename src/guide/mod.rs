@@ -7,8 +7,8 @@
 //! are kept as places, so that they turn with the point that looks.
 
 mod build;
+mod bundles;
 mod cells;
-mod clusters;
 mod cone;
 mod lobes;
 #[cfg(test)]

@@ -3,7 +3,8 @@ use crate::geometry::TraceCounts;
 /// Work done by an integrator, summed over paths.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PathCounts {
-    /// Paths started, one camera ray each.
+    /// Paths started, one camera ray each; also those that only lend their light to pixels of their
+    /// cluster.
     pub camera_rays: u64,
     /// Rays traced for their closest hit, camera rays included.
     pub closest_rays: u64,

@@ -163,6 +163,12 @@ impl Exposure {
         self.film.summary().relative_error
     }
 
+    /// Samples of all pixels together.
+    pub fn samples(&self) -> u64 {
+        let pixels = self.film.tiles().iter().flat_map(|tile| tile.pixels());
+        pixels.map(|pixel| u64::from(pixel.count())).sum()
+    }
+
     /// Work done so far.
     pub fn counts(&self) -> &PathCounts {
         &self.counts

@@ -106,7 +106,7 @@ pub(crate) fn print_json(facts: &Facts<'_>) -> Result<(), Failure> {
         camera_rays: counts.camera_rays,
         closest_rays: counts.closest_rays,
         shadow_rays: counts.shadow_rays,
-        samples_per_second: counts.camera_rays as f64 / facts.status.seconds.max(1e-9),
+        samples_per_second: facts.status.samples_per_second,
         peak_memory_bytes: peak_memory_bytes(),
         invalid_samples: counts.invalid_samples,
         estimated_relative_error: facts.snapshot.relative_error,

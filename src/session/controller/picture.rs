@@ -299,7 +299,7 @@ impl Picture {
         status.cpu_seconds = self.cpu_seconds;
         status.relative_error = self.summary.relative_error;
         status.counts = self.counts;
-        status.samples_per_second = self.counts.camera_rays as f64 / self.seconds.max(1e-9);
+        status.samples_per_second = self.summary.samples as f64 / self.seconds.max(1e-9);
         let progress = Progress {
             seconds: self.seconds,
             samples_mean: status.samples_mean,

@@ -95,6 +95,6 @@ fn run(
         cpu_seconds: exposure.cpu_seconds(),
         wall_seconds: exposure.wall_seconds(),
         rays: counts.closest_rays + counts.shadow_rays,
-        samples: counts.camera_rays,
+        samples: exposure.samples(),
     })
 }

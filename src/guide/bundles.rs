@@ -6,7 +6,7 @@ use super::lobes::LobeSphere;
 /// Share of the probability that all lobes get alike.
 const EVEN: f32 = 0.1;
 
-/// Clusters that spread by less, in cell widths, are left whole.
+/// Bundles that spread by less, in cell widths, are left whole.
 const SMALL: f32 = 0.1;
 
 /// The smallest radius of a lobe in cell widths: that far a reflection moves about when the eye moves
@@ -21,9 +21,9 @@ const ALLOWANCE: f32 = 3.0;
 /// of width `width`. Changes the order of `seen`, which is not empty.
 pub(super) fn spheres(seen: &mut [(Vec3, f32)], width: f32) -> Vec<LobeSphere> {
     let (small, least) = (SMALL * width, LEAST_RADIUS * width);
-    let mut clusters = vec![Cluster::new(seen)];
-    while clusters.len() < LOBES {
-        let widest = clusters
+    let mut bundles = vec![Bundle::new(seen)];
+    while bundles.len() < LOBES {
+        let widest = bundles
             .iter()
             .enumerate()
             .filter(|(_, c)| c.spread() > small * small)
@@ -31,19 +31,19 @@ pub(super) fn spheres(seen: &mut [(Vec3, f32)], width: f32) -> Vec<LobeSphere> {
         let Some((index, _)) = widest else {
             break;
         };
-        let (a, b) = clusters.swap_remove(index).split();
-        clusters.extend([a, b]);
+        let (a, b) = bundles.swap_remove(index).split();
+        bundles.extend([a, b]);
     }
-    let total: f32 = clusters.iter().map(|c| c.weight).sum();
-    let even = EVEN / clusters.len() as f32;
-    clusters
+    let total: f32 = bundles.iter().map(|c| c.weight).sum();
+    let even = EVEN / bundles.len() as f32;
+    bundles
         .iter()
         .map(|c| c.sphere(least, c.weight / total * (1.0 - EVEN) + even))
         .collect()
 }
 
 /// Places that one sphere is to hold.
-struct Cluster<'a> {
+struct Bundle<'a> {
     seen: &'a mut [(Vec3, f32)],
     weight: f32,
     mean: Vec3,
@@ -51,7 +51,7 @@ struct Cluster<'a> {
     variance: Vec3,
 }
 
-impl<'a> Cluster<'a> {
+impl<'a> Bundle<'a> {
     fn new(seen: &'a mut [(Vec3, f32)]) -> Self {
         let n = seen.len() as f32;
         let mean = seen.iter().map(|s| s.0).sum::<Vec3>() / n;
