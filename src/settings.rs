@@ -88,7 +88,8 @@ impl Reuse {
     /// Every pixel by itself.
     pub const NONE: Self = Self(1);
 
-    /// As many as suit the scene: 16, or 4 where much of the noise is that of many lights.
+    /// As many as suit the scene: 16, 4 where much of the noise is that of many lights, 1 under a sky
+    /// without a picture.
     pub const AUTO: Self = Self(0);
 
     /// All choices, in the order in which they are offered.

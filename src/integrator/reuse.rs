@@ -174,6 +174,8 @@ pub(super) fn cluster_size(scene: &PreparedScene, settings: &PathSettings) -> us
         return 1;
     }
     match settings.reuse as usize {
+        // Rays that find an unblocked sky have no noise; what is shared has some where normals differ.
+        0 if shares_sky(scene) => 1,
         0 if scene.light_sampler().choices() > FEW_LIGHTS => FOR_MANY_LIGHTS,
         0 => MAX_CLUSTER,
         reuse => reuse.min(MAX_CLUSTER),
