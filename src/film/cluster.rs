@@ -3,8 +3,8 @@ use super::tile::{BLOCK_HEIGHT, BLOCK_WIDTH};
 
 /// Pixels that share their light: some of a block of 8 × 4 pixels of the picture, as far apart in
 /// it as they can be and staggered from row to row, so that their alike noise shows neither as a patch
-/// nor as stripes. Blocks lie on a grid that
-/// begins at pixel (0, 0), and reach over the edges of pictures, regions and tiles.
+/// nor as stripes. Blocks lie on a grid that begins at pixel (0, 0), and reach over the edges of
+/// pictures, regions and tiles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cluster {
     block: [u32; 2],

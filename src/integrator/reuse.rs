@@ -11,8 +11,8 @@
 //! rays to the shared vertex of path k. This is multiple importance sampling by the balance heuristic:
 //! every path of the cluster could have made every shared vertex that it sees, so the mean is that of
 //! paths alone. Where part of the rays is aimed, q stays that of the material, and Lₖ is scaled by it
-//! over the density of the ray that made the vertex.
-//! A point of an even sky is shared likewise, with densities per solid angle.
+//! over the density of the ray that made the vertex. A point of an even sky is shared likewise, with
+//! densities per solid angle.
 //!
 //! Bekaert, Sbert, Halton 2002, "Accelerating Path Tracing by Re-Using Paths"; Veach 1997, section
 //! 9.2.2. Paths that have come to their receivers over mirrors share among those of as many bounces.
@@ -253,13 +253,15 @@ pub(super) fn exchange(
             continue;
         }
         reach.fill(0.0);
-        let is_for_all = own.reach(shared) > 0.0;
+        let own_reach = own.reach(shared);
+        let is_for_all = own_reach > 0.0;
         for (other, reach) in paths.iter().zip(&mut reach) {
             let Some(receiver) = &other.receiver else {
                 continue;
             };
             if std::ptr::eq(other, path) {
-                *reach = if is_for_all { own.reach(shared) } else { 1.0 };
+                // What is not for all is for the lender alone.
+                *reach = if is_for_all { own_reach } else { 1.0 };
             } else if is_for_all && receiver.bounce == own.bounce {
                 *reach = receiver.reach(shared);
                 if *reach > 0.0 && occluded(&receiver.ray_to(shared), counts) {

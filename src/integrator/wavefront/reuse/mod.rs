@@ -4,7 +4,7 @@
 mod connect;
 mod rows;
 
-use super::super::reuse::{MAX_CLUSTER, Receiver, SharedVertex};
+use super::super::reuse::{Receiver, SharedVertex};
 use super::super::{PathCounts, PathTracer};
 use crate::color::Rgb;
 use crate::math::{LaneKernel, Lanes, ROW, Ray, run_lanes};
@@ -182,5 +182,3 @@ impl Reuse {
         }
     }
 }
-
-const _: () = assert!(MAX_CLUSTER.is_power_of_two());
