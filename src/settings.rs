@@ -89,7 +89,7 @@ impl Reuse {
     pub const NONE: Self = Self(1);
 
     /// As many as suit the scene: 16, 4 where much of the noise is that of many lights, 1 under a sky
-    /// without a picture.
+    /// without a picture if not all surfaces are diffuse.
     pub const AUTO: Self = Self(0);
 
     /// All choices, in the order in which they are offered.

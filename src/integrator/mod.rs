@@ -11,6 +11,7 @@ mod counts;
 mod direct;
 mod double;
 mod first_hit;
+mod furnace;
 mod guided;
 mod path;
 mod reference;

@@ -4,7 +4,7 @@ use super::direct::DirectRay;
 use super::path::{Path, Vertex};
 use super::reuse::{Followed, SharedVertex, exchange};
 use super::{PathCounts, PathId, PathTracer};
-use crate::color::{Rgb, is_valid_radiance};
+use crate::color::Rgb;
 use crate::geometry::Hit;
 use crate::math::Ray;
 
@@ -40,11 +40,12 @@ pub fn reference_cluster(
     for (radiance, path) in radiance.iter_mut().zip(&paths) {
         *radiance = path.radiance;
     }
-    exchange(&paths, radiance, counts, |ray, counts| {
+    let furnace = tracer.furnace();
+    exchange((&paths, furnace), radiance, counts, |ray, counts| {
         occluded(tracer, ray, counts)
     });
     for radiance in radiance {
-        if !is_valid_radiance(*radiance) {
+        if !tracer.is_valid(*radiance, furnace.is_some()) {
             counts.invalid_samples += 1;
             *radiance = Rgb::ZERO;
         }
@@ -54,6 +55,7 @@ pub fn reference_cluster(
 /// Follows one path to its end.
 fn follow(tracer: &PathTracer<'_>, mut path: Path, counts: &mut PathCounts) -> Followed {
     let (mut receiver, mut shared, mut radiance) = (None, None, Rgb::ZERO);
+    let sampler = path.sampler;
     counts.camera_rays += 1;
     loop {
         let hit = closest(tracer, &path.ray, counts);
@@ -80,11 +82,13 @@ fn follow(tracer: &PathTracer<'_>, mut path: Path, counts: &mut PathCounts) -> F
     }
     match shared {
         None => Followed {
+            sampler,
             radiance: path.radiance,
             receiver,
             shared: None,
         },
         Some(vertex) => Followed {
+            sampler,
             radiance,
             receiver,
             shared: Some((vertex, path.radiance)),

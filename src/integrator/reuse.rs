@@ -19,11 +19,13 @@
 
 use glam::Vec3;
 
+use super::furnace::PATHS_PER_PROBE;
 use super::path::{Path, Vertex};
 use super::{PathCounts, PathSettings, PathTracer};
 use crate::bsdf::Bsdf;
 use crate::color::Rgb;
 use crate::math::{Ray, SHADOW_T_MAX, offset_origin};
+use crate::sampling::PathSampler;
 use crate::scene::PreparedScene;
 use crate::settings::Mode;
 
@@ -155,8 +157,9 @@ impl Receiver {
 }
 
 /// A path that has been followed to its end.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Followed {
+    pub(super) sampler: PathSampler,
     /// Radiance that came to the camera without the shared vertex.
     pub(super) radiance: Rgb,
     pub(super) receiver: Option<Receiver>,
@@ -174,8 +177,9 @@ pub(super) fn cluster_size(scene: &PreparedScene, settings: &PathSettings) -> us
         return 1;
     }
     match settings.reuse as usize {
-        // Rays that find an unblocked sky have no noise; what is shared has some where normals differ.
-        0 if shares_sky(scene) => 1,
+        // Where the sky is free there is no noise to share away, and where it is blocked by what does not
+        // share its light there is little to gain.
+        0 if shares_sky(scene) && !scene.is_diffuse() => 1,
         0 if scene.light_sampler().choices() > FEW_LIGHTS => FOR_MANY_LIGHTS,
         0 => MAX_CLUSTER,
         reuse => reuse.min(MAX_CLUSTER),
@@ -183,7 +187,7 @@ pub(super) fn cluster_size(scene: &PreparedScene, settings: &PathSettings) -> us
 }
 
 /// True when what scattered rays bring from the sky counts in full, whatever surface they left.
-fn shares_sky(scene: &PreparedScene) -> bool {
+pub(super) fn shares_sky(scene: &PreparedScene) -> bool {
     scene.environment_light().is_some_and(|light| {
         scene.light(light).is_constant_sky() && scene.light_sampler().group_pmf(light) == 0.0
     })
@@ -237,19 +241,21 @@ impl Path {
     }
 }
 
-/// Adds what the receivers of a cluster take in to `radiance`, path by path. `occluded` traces.
+/// Adds what the receivers of a cluster take in to `radiance`, path by path, with the correction by
+/// the sky of [`PathTracer::furnace`] if there is one. `occluded` traces.
 pub(super) fn exchange(
-    paths: &[Followed],
+    (paths, furnace): (&[Followed], Option<Rgb>),
     radiance: &mut [Rgb],
     counts: &mut PathCounts,
     mut occluded: impl FnMut(&Ray, &mut PathCounts) -> bool,
 ) {
+    let mut weights = [0.0; MAX_CLUSTER];
     let mut reach = [0.0; MAX_CLUSTER];
     for path in paths {
         let (Some((shared, lent)), Some(own)) = (&path.shared, &path.receiver) else {
             continue;
         };
-        if *lent == Rgb::ZERO {
+        if *lent == Rgb::ZERO && furnace.is_none() {
             continue;
         }
         reach.fill(0.0);
@@ -275,7 +281,35 @@ pub(super) fn exchange(
                 && reach[i] > 0.0
             {
                 radiance[i] += receiver.factor * *lent * (reach[i] * share);
+                weights[i] += reach[i] * share;
             }
         }
     }
+    let Some(sky) = furnace else {
+        return;
+    };
+    let openness = openness(paths, |ray| !occluded(ray, counts));
+    for (path, (radiance, weights)) in paths.iter().zip(radiance.iter_mut().zip(weights)) {
+        if let Some(receiver) = &path.receiver {
+            let own = if path.shared.is_none() { 1.0 } else { 0.0 };
+            *radiance += receiver.factor * sky * (openness * (1.0 - (weights + own)));
+        }
+    }
+}
+
+/// The part of the rays of a cluster that find the sky free; 0 without rays.
+fn openness(paths: &[Followed], mut is_free: impl FnMut(&Ray) -> bool) -> f32 {
+    let (mut free, mut probes) = (0.0, 0.0);
+    for path in paths.iter().step_by(PATHS_PER_PROBE) {
+        if let Some(receiver) = &path.receiver {
+            probes += 1.0;
+            if receiver
+                .probe(&path.sampler)
+                .is_some_and(|ray| is_free(&ray))
+            {
+                free += 1.0;
+            }
+        }
+    }
+    if probes > 0.0 { free / probes } else { 0.0 }
 }

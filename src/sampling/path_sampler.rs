@@ -23,6 +23,8 @@ pub enum Slot {
     Lobe,
     /// Russian roulette: x.
     Roulette,
+    /// Direction in which a path looks whether the sky is free (2-D).
+    Openness,
     /// Choice of a light for direct light sample `.0`: x picks the light, y a part of it.
     LightChoice(u32),
     /// Point on the light for direct light sample `.0` (2-D).
@@ -39,6 +41,7 @@ impl Slot {
             Self::Scatter => 2,
             Self::Lobe => 3,
             Self::Roulette => 4,
+            Self::Openness => 5,
             Self::LightChoice(n) => 8 + 3 * n,
             Self::LightPoint(n) => 9 + 3 * n,
             Self::Hemisphere(n) => 10 + 3 * n,

@@ -161,6 +161,15 @@ impl PreparedScene {
         &self.tables.materials[self.owner(primitive).material as usize].bsdf
     }
 
+    /// True when no surface scatters light in another way than a diffuse one.
+    pub fn is_diffuse(&self) -> bool {
+        let owners = &self.tables.owners;
+        owners.iter().all(|owner| {
+            let bsdf = &self.tables.materials[owner.material as usize].bsdf;
+            matches!(bsdf, Bsdf::Diffuse(_)) || bsdf.is_black()
+        })
+    }
+
     /// Reflectance or tint of `primitive`, the colour of an emitter's emission scaled to at most 1.
     pub fn albedo(&self, primitive: u32) -> Rgb {
         let albedo = self.bsdf(primitive).albedo();

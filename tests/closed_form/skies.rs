@@ -3,10 +3,12 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use glam::DVec3;
-use softbox::camera::Camera;
+use softbox::camera::{Camera, RayCamera};
 use softbox::color::Rgb;
 use softbox::image::Image;
-use softbox::integrator::PathSettings;
+use softbox::integrator::{
+    MAX_CLUSTER, PathCounts, PathId, PathSettings, PathTracer, reference_cluster,
+};
 use softbox::scene::{EnvironmentMap, Scene, SceneBuilder, Surface};
 use softbox::settings::{MaxDepth, Mode};
 
@@ -72,6 +74,40 @@ fn c9_environment_with_a_gradient() {
             estimate.mean(0)
         );
         assert!(estimate.standard_error(0) <= PRECISION * exact);
+    }
+}
+
+/// Every sample is the exact value where all rays find the sky, although the normals of the pixels that
+/// share their light differ.
+#[test]
+fn what_pixels_share_has_no_noise_where_the_sky_is_free() {
+    let mut builder = SceneBuilder::new("ball");
+    let material = builder.diffuse("grey", Rgb::splat(0.6));
+    builder.sphere("ball", DVec3::ZERO, 1.0, material);
+    builder.scene_mut().environment.sky = Rgb::splat(2.0);
+    let scene = prepared(&builder.finish());
+    let camera = camera(DVec3::Z * 4.0, DVec3::ZERO, 16.0);
+    let settings = PathSettings {
+        reuse: 0,
+        ..settings(Mode::Best, MaxDepth(5))
+    };
+    let size = 8;
+    let camera = RayCamera::new(&camera, size, size, scene.normalization());
+    let tracer = PathTracer::new(&scene, &camera, settings);
+    assert_eq!(tracer.cluster_size(), MAX_CLUSTER);
+    let pixel = |i: u32| [i % size, i / size];
+    for first in (0..size * size).step_by(MAX_CLUSTER) {
+        let ids: Vec<_> = (first..first + MAX_CLUSTER as u32)
+            .map(|i| PathId {
+                pixel: pixel(i),
+                sample: 3,
+            })
+            .collect();
+        let mut radiance = [Rgb::ZERO; MAX_CLUSTER];
+        reference_cluster(&tracer, &ids, &mut radiance, &mut PathCounts::default());
+        for value in radiance {
+            assert!((value - 1.2).abs().max_element() < 1e-5, "{value}");
+        }
     }
 }
 

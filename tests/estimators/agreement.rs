@@ -92,6 +92,11 @@ fn constant_sky() {
 }
 
 #[test]
+fn a_box_open_to_the_sky() {
+    check_depths(&scenes::open_box(), LONG);
+}
+
+#[test]
 fn ambient() {
     check_depths(&scenes::ambient(), SHORT);
 }

@@ -202,6 +202,16 @@ pub(crate) fn constant_sky() -> View {
     (builder.finish(), camera)
 }
 
+/// A box with a window at the front, lit by the sky alone.
+pub(crate) fn open_box() -> View {
+    let grey = Surface::Diffuse {
+        reflectance: Rgb::splat(0.8),
+    };
+    let mut builder = dark_box("open box");
+    builder.scene_mut().environment.sky = Rgb::new(0.5, 0.7, 1.0);
+    two_spheres(builder, grey, grey)
+}
+
 pub(crate) fn ambient() -> View {
     let (mut builder, camera) = outdoors("ambient");
     builder.scene_mut().environment.ambient = Rgb::new(1.0, 0.8, 0.6);

@@ -16,7 +16,7 @@ mod surface;
 
 use super::path::{Path, Vertex};
 use super::{PathCounts, PathId, PathTracer};
-use crate::color::{Rgb, is_valid_radiance};
+use crate::color::Rgb;
 use crate::geometry::Hit;
 use crate::math::{ROW, run_lanes};
 use crate::sampling::PathSampler;
@@ -79,10 +79,12 @@ impl Wavefront {
             std::mem::swap(&mut self.paths, &mut self.next);
             bounce += 1;
         }
-        self.reuse.exchange(tracer, &mut self.radiance, counts);
+        self.reuse
+            .exchange(tracer, &self.samplers, &mut self.radiance, counts);
         radiance.copy_from_slice(&self.radiance[..ids.len()]);
+        let is_corrected = tracer.furnace().is_some();
         for radiance in radiance {
-            if !is_valid_radiance(*radiance) {
+            if !tracer.is_valid(*radiance, is_corrected) {
                 counts.invalid_samples += 1;
                 *radiance = Rgb::ZERO;
             }

@@ -33,7 +33,7 @@ impl Reuse {
         let all = self.shared[member * self.rows + row].lanes;
         let mut lanes = all;
         for lane in set_bits(all) {
-            if lent[self.path(member, row, lane)] == Rgb::ZERO {
+            if lent[self.path(member, row, lane)] == Rgb::ZERO && self.furnace.is_none() {
                 lanes &= !(1 << lane);
             }
         }
@@ -169,6 +169,7 @@ fn take_in<L: Lanes>(reuse: &Reuse, (row, part): (usize, usize), lent: &[Rgb], o
             sums.set(lane, own[reuse.path(member, row, lane)]);
         }
     }
+    let mut weights = [[0.0; ROW]; MAX_CLUSTER];
     for lender in 0..members {
         let start = (part * members + lender) * members;
         let reach = &reuse.reach[start..start + members];
@@ -188,11 +189,47 @@ fn take_in<L: Lanes>(reuse: &Reuse, (row, part): (usize, usize), lent: &[Rgb], o
             let before = Vec3Lanes::load(sums);
             let after = before + (factor * light).scale(reach * share);
             *sums = Vec3Lanes::select(reach.gt(zero), after, before).store();
+            if reuse.furnace.is_some() {
+                let weight = L::select(reach.gt(zero), reach * share, zero);
+                (L::load_row(&weights[member]) + weight).store_row(&mut weights[member]);
+            }
         }
+    }
+    if let Some(sky) = reuse.furnace {
+        correct::<L>(reuse, (row, sky), &weights, &mut sums);
     }
     for (member, sums) in sums.iter().enumerate().take(members) {
         for lane in 0..clusters {
             own[reuse.path(member, row, lane)] = sums.get(lane);
         }
+    }
+}
+
+/// Corrects what the clusters of `row` have taken in by what the `weights` of that fall short of 1
+/// ([`super::super::super::furnace`]).
+#[inline(always)]
+fn correct<L: Lanes>(
+    reuse: &Reuse,
+    (row, sky): (usize, Rgb),
+    weights: &[[f32; ROW]; MAX_CLUSTER],
+    sums: &mut [Vec3Array; MAX_CLUSTER],
+) {
+    let (zero, one) = (L::splat(0.0), L::splat(1.0));
+    let first = row * L::N;
+    let clusters = (reuse.openness.len() - first).min(L::N);
+    let mut openness = [0.0; ROW];
+    openness[..clusters].copy_from_slice(&reuse.openness[first..first + clusters]);
+    let openness = L::load_row(&openness);
+    let sky = Vec3Lanes::<L>::splat(sky);
+    for member in 0..reuse.members {
+        let at = member * reuse.rows + row;
+        let shares = L::mask_of_bits(reuse.shared[at].lanes & L::ALL);
+        let own = L::select(shares, zero, one);
+        let missing = one - (L::load_row(&weights[member]) + own);
+        let factor = reuse.receivers[at].factor::<L>();
+        let before = Vec3Lanes::load(&sums[member]);
+        let after = before + (factor * sky).scale(openness * missing);
+        let receives = L::mask_of_bits(reuse.receivers[at].lanes::<L>());
+        sums[member] = Vec3Lanes::select(receives, after, before).store();
     }
 }

@@ -4,10 +4,12 @@
 mod connect;
 mod rows;
 
+use super::super::furnace::PATHS_PER_PROBE;
 use super::super::reuse::{Receiver, SharedVertex};
 use super::super::{PathCounts, PathTracer};
 use crate::color::Rgb;
 use crate::math::{LaneKernel, Lanes, ROW, Ray, run_lanes};
+use crate::sampling::PathSampler;
 use connect::{Reach, TakeIn};
 use rows::{ReceiverRow, SharedRow};
 
@@ -37,6 +39,10 @@ pub(super) struct Reuse {
     /// (row · members + k) · members + j.
     reach: Vec<[f32; ROW]>,
     rays: Vec<Ray>,
+    /// The sky that corrects what receivers take in ([`PathTracer::furnace`]).
+    furnace: Option<Rgb>,
+    /// By cluster, the part of its probes that find the sky; empty without furnace.
+    openness: Vec<f32>,
     /// Which number of `reach` each ray is for: row, lane.
     asked: Vec<(u32, u32)>,
     occluded: Vec<bool>,
@@ -70,6 +76,7 @@ impl Reuse {
             self.members,
             paths % self.members
         );
+        self.furnace = tracer.furnace();
         self.width = run_lanes(tracer.scene.aggregate().isa(), Width);
         self.rows = (paths / self.members).div_ceil(self.width);
         self.bounces.clear();
@@ -135,6 +142,7 @@ impl Reuse {
     pub(super) fn exchange(
         &mut self,
         tracer: &PathTracer<'_>,
+        samplers: &[PathSampler],
         radiance: &mut [Rgb],
         counts: &mut PathCounts,
     ) {
@@ -142,6 +150,9 @@ impl Reuse {
             return;
         }
         let isa = tracer.scene.aggregate().isa();
+        if self.furnace.is_some() {
+            self.probe(tracer, samplers, counts);
+        }
         let (own, lent) = radiance.split_at_mut(radiance.len() / 2);
         let rays = self.width * self.members * (self.members - 1);
         let part = (MOST_CONNECTING / rays).max(1);
@@ -165,6 +176,49 @@ impl Reuse {
                 rows,
             };
             run_lanes(isa, take_in);
+        }
+    }
+
+    /// Finds out how open each cluster is. `samplers` are those of all paths.
+    fn probe(
+        &mut self,
+        tracer: &PathTracer<'_>,
+        samplers: &[PathSampler],
+        counts: &mut PathCounts,
+    ) {
+        let clusters = samplers.len() / self.members;
+        let mut probes = vec![0.0_f32; clusters];
+        self.rays.clear();
+        self.asked.clear();
+        for (id, sampler) in (0..)
+            .zip(samplers)
+            .step_by(PATHS_PER_PROBE.min(self.members))
+        {
+            let (row, lane) = self.place(id);
+            if self.bounces[id as usize] == NONE {
+                continue;
+            }
+            let cluster = id as usize / self.members;
+            probes[cluster] += 1.0;
+            if let Some(ray) = self.receivers[row].get(lane).probe(sampler) {
+                self.rays.push(ray);
+                self.asked.push((cluster as u32, 0));
+            }
+        }
+        self.occluded.clear();
+        self.occluded.resize(self.rays.len(), false);
+        let aggregate = tracer.scene.aggregate();
+        aggregate.any_hit(&self.rays, &mut self.occluded, &mut counts.trace);
+        counts.shadow_rays += self.rays.len() as u64;
+        self.openness.clear();
+        self.openness.resize(clusters, 0.0);
+        for (&(cluster, _), &occluded) in self.asked.iter().zip(&self.occluded) {
+            self.openness[cluster as usize] += f32::from(u8::from(!occluded));
+        }
+        for (openness, probes) in self.openness.iter_mut().zip(probes) {
+            if probes > 0.0 {
+                *openness /= probes;
+            }
         }
     }
 

@@ -1,6 +1,6 @@
 use super::super::super::reuse::{Receiver, SharedVertex};
 use super::NONE;
-use crate::math::{Lanes, ROW, Vec3Array, Vec3Lanes};
+use crate::math::{IntLanes, Lanes, ROW, Vec3Array, Vec3Lanes};
 
 /// [`Receiver`]s of one member of the clusters of a row.
 #[derive(Clone, Debug)]
@@ -78,6 +78,18 @@ impl ReceiverRow {
         self.bounce[lane] = receiver.bounce;
     }
 
+    pub(super) fn get(&self, lane: usize) -> Receiver {
+        Receiver {
+            point: self.point.get(lane),
+            departure: self.departure.get(lane),
+            error: self.error.get(lane),
+            geometric_normal: self.geometric_normal.get(lane),
+            shading_normal: self.shading_normal.get(lane),
+            factor: self.factor.get(lane),
+            bounce: self.bounce[lane],
+        }
+    }
+
     #[inline(always)]
     pub(super) fn load<L: Lanes>(&self) -> ReceiverLanes<L> {
         ReceiverLanes {
@@ -86,8 +98,15 @@ impl ReceiverRow {
             error: Vec3Lanes::load(&self.error),
             geometric_normal: Vec3Lanes::load(&self.geometric_normal),
             shading_normal: Vec3Lanes::load(&self.shading_normal),
-            bounce: <L::Ints as crate::math::IntLanes>::load(&self.bounce),
+            bounce: L::Ints::load(&self.bounce),
         }
+    }
+
+    /// A bit for each of the lanes that has one.
+    #[inline(always)]
+    pub(super) fn lanes<L: Lanes>(&self) -> u32 {
+        let none = L::ints_eq(L::Ints::load(&self.bounce), L::Ints::splat(NONE));
+        L::ALL & !L::bits(none)
     }
 
     #[inline(always)]
@@ -129,7 +148,7 @@ impl SharedRow {
             error: Vec3Lanes::load(&self.error),
             geometric_normal: Vec3Lanes::load(&self.geometric_normal),
             shading_normal: Vec3Lanes::load(&self.shading_normal),
-            bounce: <L::Ints as crate::math::IntLanes>::load(&self.bounce),
+            bounce: L::Ints::load(&self.bounce),
             infinite: self.infinite,
         }
     }
