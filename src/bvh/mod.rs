@@ -18,6 +18,7 @@ mod overlap;
 mod packet;
 mod refit;
 mod settings;
+mod share;
 mod simd;
 mod single;
 mod slab;

@@ -7,7 +7,8 @@ use super::tree::{BLOCK, Bvh};
 
 impl Bvh {
     /// Number of wide nodes and blocks in whose boxes `point` lies although its primitive is not
-    /// below them. `is_own` tells whether some of these blocks hold the primitive.
+    /// below them. `is_own` tells whether some of these places, as in [`Self::leaves`], hold the
+    /// primitive.
     ///
     /// The mean over points spread evenly on the surfaces is the end-point overlap. Aila, Karras,
     /// Laine 2013, "On Quality Metrics of Bounding Volume Hierarchies".
@@ -41,9 +42,9 @@ impl Bvh {
                 let own = self.add_overlap(reference as usize, point, is_own, overlap);
                 (own, 1)
             } else {
-                let first = (reference & !LEAF) as usize;
-                let count = node.leaf_primitives(slot as Part).div_ceil(BLOCK);
-                (is_own(first..first + count), count)
+                let places = node.places(slot as Part);
+                let count = places.len().div_ceil(BLOCK);
+                (is_own(places), count)
             };
             found |= own;
             *overlap += if own { 0 } else { cost };

@@ -9,8 +9,8 @@ impl Bvh {
     /// Fits all boxes to primitives that have moved; which primitives lie below which node stays.
     ///
     /// `blocks` is what the caller keeps for the blocks, as [`Self::map_blocks`] made it. `renew`
-    /// makes a block of the moved primitives and returns their box, [`Aabb::EMPTY`] if nothing can
-    /// hit them. Returns the expected cost of a ray, as in [`Self::expected_visits`] nodes and
+    /// makes a block of the moved primitives and returns their boxes, [`Aabb::EMPTY`] of those that
+    /// nothing can hit. Returns the expected cost of a ray, as in [`Self::expected_visits`] nodes and
     /// blocks together: when it has grown much, a new tree pays.
     ///
     /// # Panics
@@ -18,19 +18,18 @@ impl Bvh {
     pub fn refit<B: Send>(
         &mut self,
         blocks: &mut [B],
-        renew: &(impl Fn(&mut B) -> Aabb + Sync),
+        renew: &(impl Fn(&mut B) -> [Aabb; BLOCK] + Sync),
     ) -> f64 {
         assert_eq!(blocks.len(), self.block_count());
-        let boxes: Vec<Aabb> = blocks.par_iter_mut().map(renew).collect();
+        let boxes: Vec<_> = blocks.par_iter_mut().map(renew).collect();
+        let boxes = boxes.as_flattened();
         self.nodes_mut().par_iter_mut().for_each(|node| {
             for slot in 0..WIDTH {
                 let reference = node.children[slot];
                 if reference & LEAF == 0 {
                     continue;
                 }
-                let first = (reference & !LEAF) as usize;
-                let count = node.leaf_primitives(slot as Part).div_ceil(BLOCK);
-                let boxes = boxes[first..first + count].iter();
+                let boxes = boxes[node.places(slot as Part)].iter();
                 let bounds = boxes.fold(Aabb::EMPTY, |all, b| all.union(*b));
                 let is_hit = !bounds.is_empty();
                 node.set_bounds(slot, if is_hit { padded(bounds) } else { bounds });

@@ -100,6 +100,10 @@ impl Bvh {
         self.blocks
     }
 
+    pub(super) fn set_block_count(&mut self, blocks: usize) {
+        self.blocks = blocks;
+    }
+
     /// Memory of the nodes, in bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(self.nodes.as_slice())
@@ -147,7 +151,8 @@ impl Bvh {
         at
     }
 
-    /// Blocks of all leaves below a node; they are contiguous.
+    /// Blocks of all leaves below a node; contiguous as long as leaves share none
+    /// ([`Self::share_blocks`]).
     pub fn blocks(&self, node: NodeId) -> Range<usize> {
         let leaf = |side| {
             let leaf = self.outermost(node, side);
@@ -157,6 +162,21 @@ impl Bvh {
         };
         let ((first, _), (last, count)) = (leaf(0), leaf(1));
         first..last + count.div_ceil(BLOCK)
+    }
+
+    /// The leaves below a node, left to right: of each the places of its primitives. Place 4 b + l is
+    /// lane l of block b.
+    pub fn leaves(&self, node: NodeId) -> impl Iterator<Item = Range<usize>> + '_ {
+        let mut open = vec![node];
+        std::iter::from_fn(move || {
+            while let Some(node) = open.pop() {
+                match self.children(node) {
+                    Some([left, right]) => open.extend([right, left]),
+                    None => return Some(self.wide(node).places(node.part)),
+                }
+            }
+            None
+        })
     }
 
     /// Number of primitives below a node.

@@ -1,7 +1,7 @@
 use std::ops::{ControlFlow, Range};
 use std::sync::Arc;
 
-use super::block::{Block, ID_LIMIT};
+use super::block::ID_LIMIT;
 use super::leaf::{LeafOrder, Query, bounds};
 use super::refine::{refine, refine_meshes};
 use super::sweep::Sweep;
@@ -82,8 +82,8 @@ impl Aggregate {
             quality,
             ..settings
         };
-        let (bvh, ids) = Bvh::build_with(shapes.len(), &bounds, &first, progress)?;
-        let leaves = LeafOrder::new(&shapes, &bvh, &ids);
+        let (mut bvh, ids) = Bvh::build_with(shapes.len(), &bounds, &first, progress)?;
+        let leaves = LeafOrder::new(&shapes, &mut bvh, &ids);
         // The other kinds are there to be compared.
         let is_best = settings.kind == BvhKind::Sah;
         let sweep = is_best.then(|| Sweep::new(&shapes)).flatten();
@@ -136,8 +136,8 @@ impl Aggregate {
 
     /// [`Self::refined`] without the instances.
     pub(super) fn refined_alone(&self, progress: &Progress<'_>) -> Option<Self> {
-        let (bvh, ids) = refine(&self.shapes, self.leaf_size, progress)?;
-        let leaves = LeafOrder::new(&self.shapes, &bvh, &ids);
+        let (mut bvh, ids) = refine(&self.shapes, self.leaf_size, progress)?;
+        let leaves = LeafOrder::new(&self.shapes, &mut bvh, &ids);
         Some(Self {
             shapes: Arc::clone(&self.shapes),
             bvh: Arc::new(bvh),
@@ -212,14 +212,18 @@ impl Aggregate {
 
     /// Ids of all primitives below a node of [`Self::bvh`].
     pub fn primitives(&self, node: NodeId) -> impl Iterator<Item = u32> + '_ {
-        let blocks = &self.leaves.blocks()[self.bvh.blocks(node)];
-        blocks.iter().flat_map(Block::ids)
+        let places = self.bvh.leaves(node).flatten();
+        places.map(|place| self.id_at(place))
     }
 
-    /// Whether some of these blocks hold a primitive.
-    pub(super) fn holds(&self, blocks: Range<usize>, id: u32) -> bool {
-        let ids = self.leaves.blocks()[blocks].iter().flat_map(Block::ids);
-        ids.into_iter().any(|own| own == id)
+    /// The primitive in a place, as in [`Bvh::leaves`].
+    fn id_at(&self, place: usize) -> u32 {
+        self.leaves.blocks()[place / BLOCK].id(place % BLOCK)
+    }
+
+    /// Whether some of these places hold a primitive.
+    pub(super) fn holds(&self, mut places: Range<usize>, id: u32) -> bool {
+        places.any(|place| self.id_at(place) == id)
     }
 
     /// The shapes, without those of instances.

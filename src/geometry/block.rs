@@ -51,14 +51,19 @@ impl Block {
         Self { corners, ids }
     }
 
-    /// Makes the same block of shapes that have moved; returns the box of those that can be hit.
-    pub(super) fn renew(&mut self, shapes: &Shapes, bounds: &impl Fn(u32) -> Aabb) -> Aabb {
+    /// Makes the same block of shapes that have moved; returns their boxes, empty of those that
+    /// nothing can hit.
+    pub(super) fn renew(
+        &mut self,
+        shapes: &Shapes,
+        bounds: &impl Fn(u32) -> Aabb,
+    ) -> [Aabb; BLOCK] {
         let ids = [0, 1, 2, 3].map(|lane| match self.id(lane) {
             NOTHING => NO_PRIMITIVE,
             id => id,
         });
         *self = Self::new(shapes, &ids, self.has_more());
-        let mut all = Aabb::EMPTY;
+        let mut all = [Aabb::EMPTY; BLOCK];
         for (lane, id) in ids
             .into_iter()
             .enumerate()
@@ -69,7 +74,7 @@ impl Block {
                 let axes = self.corners.iter_mut().flatten();
                 axes.for_each(|axis| axis[lane] = f32::NAN);
             }
-            all = all.union(own);
+            all[lane] = own;
         }
         all
     }

@@ -16,9 +16,11 @@ pub(super) struct LeafOrder {
 }
 
 impl LeafOrder {
-    pub(super) fn new(shapes: &Shapes, bvh: &Bvh, ids: &LeafBlocks) -> Self {
+    /// The leaves of `bvh`, which come to share blocks.
+    pub(super) fn new(shapes: &Shapes, bvh: &mut Bvh, ids: &LeafBlocks) -> Self {
+        let ids = bvh.share_blocks(ids);
         Self {
-            blocks: bvh.map_blocks(ids, |ids, more| Block::new(shapes, ids, more)),
+            blocks: bvh.map_blocks(&ids, |ids, more| Block::new(shapes, ids, more)),
             first_sphere: u32::try_from(shapes.triangles.len())
                 .expect("the build checked the number"),
             spheres: shapes.spheres.clone(),

@@ -29,7 +29,7 @@ impl Aggregate {
             let point = point(shapes, id as u32, sample);
             overlap += self
                 .bvh()
-                .overlap_at(point, &|blocks| self.holds(blocks, id as u32));
+                .overlap_at(point, &|places| self.holds(places, id as u32));
         }
         overlap as f64 / samples as f64
     }
