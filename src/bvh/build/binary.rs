@@ -25,7 +25,8 @@ impl BinaryNode {
     };
 
     pub(super) fn leaf(primitive: &PrimitiveRef) -> Self {
-        Self::new(primitive.min, primitive.max, [primitive.id(), NONE])
+        let Bounds { min, max } = primitive.bounds();
+        Self::new(min, max, [primitive.id(), NONE])
     }
 
     pub(super) fn inner(bounds: &Bounds, children: [u32; 2]) -> Self {

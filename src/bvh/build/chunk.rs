@@ -94,20 +94,21 @@ impl Chunk {
         self.finish_node(index, &children, &inner, parent)
     }
 
-    fn append_chunk(&mut self, chunk: Self, root: Child, parent: u32) -> Child {
+    fn append_chunk(&mut self, mut chunk: Self, root: Child, parent: u32) -> Child {
         let (first, first_block) = (self.nodes.len() as u32, self.blocks.len() as u32);
         let shifted = |reference: u32| match reference {
             leaf if leaf & LEAF != 0 => leaf + first_block,
             node => node + first,
         };
-        for (i, mut node) in chunk.nodes.into_iter().enumerate() {
-            // No child is the first node of its chunk: 0 marks an empty slot.
-            let children = node.children.map(|c| if c == 0 { 0 } else { shifted(c) });
-            node.children = children;
+        for (i, node) in chunk.nodes.iter_mut().enumerate() {
+            for child in node.children.iter_mut().filter(|child| **child != 0) {
+                // No child is the first node of its chunk: 0 marks an empty slot.
+                *child = shifted(*child);
+            }
             node.parent = if i == 0 { parent } else { node.parent + first };
-            self.nodes.push(node);
         }
-        self.blocks.extend(chunk.blocks);
+        self.nodes.append(&mut chunk.nodes);
+        self.blocks.append(&mut chunk.blocks);
         Child {
             reference: shifted(root.reference),
             ..root

@@ -33,7 +33,7 @@ pub(super) fn build(
 ) -> Option<Option<Subtree>> {
     let count = range.len();
     let mut nodes = vec![BinaryNode::EMPTY; 2 * count - 1];
-    binary::build(range, &mut nodes, 0, (&Rule::SINGLE, 0), watch)?;
+    binary::build(range, &mut nodes, 0, (&Rule::single(), 0), watch)?;
     watch.advance(if count <= binary::SERIAL { count } else { 0 })?;
     let mut tree = Reinsertion::new(nodes);
     improve(&mut tree, count, watch)?;

@@ -10,6 +10,7 @@ mod family;
 mod fast;
 mod high;
 mod optimal;
+mod pairs;
 mod primitive;
 mod range;
 mod reinsert;
@@ -27,7 +28,7 @@ use self::primitive::PrimitiveRef;
 use self::range::{Depth, Range, Rule};
 use self::watch::Watch;
 use super::node::WideNode;
-use super::tree::{Bvh, LeafBlocks};
+use super::tree::{BLOCK, Bvh, LeafBlocks};
 use super::{BvhKind, BvhQuality, BvhSettings};
 use crate::math::Aabb;
 
@@ -111,13 +112,20 @@ fn build(
     if is_fast {
         return fast::build(refs, settings.leaf_size, &watch).map(Some);
     }
+    let can_pair = !is_high && settings.kind == BvhKind::Sah;
+    let can_pair = can_pair && settings.leaf_size as usize >= BLOCK;
+    let most = if can_pair && pairs::pair(&mut refs) {
+        pairs::PAIR
+    } else {
+        1
+    };
     let nothing = (0..refs.len()).into_par_iter();
     let mut spare: Vec<_> = nothing.map(|_| PrimitiveRef::NOTHING).collect();
     let range = Range::new(&mut refs, &mut spare);
     let tree = if is_high {
         high::build(range, settings.leaf_size.clamp(1, 255), &watch)?
     } else {
-        let rule = Rule::new(settings);
+        let rule = Rule::new(settings, most);
         Some(wide::build(range, &rule, Depth::default(), &watch)?)
     };
     let Some(tree) = tree else {

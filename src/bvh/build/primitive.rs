@@ -1,6 +1,6 @@
 use glam::{Vec3, Vec4, Vec4Swizzles};
 
-use crate::math::Aabb;
+use crate::math::{Aabb, LANES};
 
 /// A box in vector registers; the fourth lane means nothing.
 #[derive(Clone, Copy, Debug)]
@@ -14,6 +14,14 @@ impl Bounds {
         min: Vec4::INFINITY,
         max: Vec4::NEG_INFINITY,
     };
+
+    #[inline(always)]
+    pub(super) fn of_lanes(lanes: &BoxLanes) -> Self {
+        Self {
+            min: -Vec4::from_slice(&lanes[..4]),
+            max: Vec4::from_slice(&lanes[4..]),
+        }
+    }
 
     #[inline(always)]
     pub(super) fn grow(&mut self, min: Vec4, max: Vec4) {
@@ -47,58 +55,68 @@ impl Bounds {
 /// which processors are slow with.
 pub(super) const NORMAL: u32 = 1 << 30;
 
-/// A primitive on its way into the tree: its bounds, and its id in the fourth lane of the minimum;
-/// or several with ids in a row, one less than their number in the fourth lane of the maximum.
+/// A box in eight lanes: the minimum with the other sign, one lane, the maximum, one lane. So the
+/// larger of two, lane by lane, holds both.
+pub(super) type BoxLanes = [f32; LANES];
+
+/// [`BoxLanes`] of nothing.
+pub(super) const NO_BOX: BoxLanes = [f32::NEG_INFINITY; LANES];
+
+/// A primitive on its way into the tree: its bounds, and its id in the lane behind the minimum; or
+/// several with ids in a row, one less than their number in the lane behind the maximum.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
 pub(super) struct PrimitiveRef {
-    pub(super) min: Vec4,
-    pub(super) max: Vec4,
+    pub(super) lanes: BoxLanes,
 }
 
 impl PrimitiveRef {
-    pub(super) const NOTHING: Self = Self {
-        min: Vec4::INFINITY,
-        max: Vec4::NEG_INFINITY,
-    };
+    pub(super) const NOTHING: Self = Self { lanes: NO_BOX };
 
     /// Primitive `id` with the box `bounds`; [`Self::NOTHING`] if that is empty or not finite.
     pub(super) fn new(id: u32, bounds: &Aabb) -> Self {
         if bounds.is_empty() || !bounds.min.is_finite() || !bounds.max.is_finite() {
             return Self::NOTHING;
         }
-        Self {
-            min: bounds.min.extend(f32::from_bits(id ^ NORMAL)),
-            max: bounds.max.extend(0.0),
-        }
+        Self::of(bounds.min, bounds.max, id, 0.0)
+    }
+
+    #[inline(always)]
+    fn of(min: Vec3, max: Vec3, id: u32, more: f32) -> Self {
+        let id = f32::from_bits(id ^ NORMAL);
+        let lanes = [-min.x, -min.y, -min.z, id, max.x, max.y, max.z, more];
+        Self { lanes }
     }
 
     /// `count` things in a row, the first of number `first`, that stay together; their bounds.
     pub(super) fn run(first: u32, count: usize, bounds: &Bounds) -> Self {
-        let mut run = Self {
-            min: bounds.min,
-            max: bounds.max,
-        };
-        run.min.w = f32::from_bits(first ^ NORMAL);
-        run.max.w = count as f32 - 1.0;
-        run
+        let Bounds { min, max } = bounds;
+        Self::of(min.truncate(), max.truncate(), first, count as f32 - 1.0)
+    }
+
+    /// Both as one, if the area of their box is at most `close` times the sum of their own, and the
+    /// ids of `next` go on where those of this end.
+    pub(super) fn joined(&self, next: &Self, close: f32) -> Option<Self> {
+        let (a, b) = (self.bounds(), next.bounds());
+        let both = a.union(&b);
+        let is_close = both.half_area() <= close * (a.half_area() + b.half_area());
+        let ids = self.ids();
+        (is_close && ids.end == next.id())
+            .then(|| Self::run(ids.start, ids.len() + next.count(), &both))
     }
 
     #[inline(always)]
     pub(super) fn bounds(&self) -> Bounds {
-        Bounds {
-            min: self.min,
-            max: self.max,
-        }
+        Bounds::of_lanes(&self.lanes)
     }
 
     pub(super) fn is_nothing(&self) -> bool {
-        self.min.x == f32::INFINITY
+        self.lanes[0] == f32::NEG_INFINITY
     }
 
     /// Index among the boxes given to the build.
     pub(super) fn id(&self) -> u32 {
-        self.min.w.to_bits() ^ NORMAL
+        self.lanes[3].to_bits() ^ NORMAL
     }
 
     /// The id and those behind it that belong to the same run.
@@ -108,13 +126,14 @@ impl PrimitiveRef {
 
     /// Number of primitives.
     pub(super) fn count(&self) -> usize {
-        self.max.w as usize + 1
+        self.lanes[7] as usize + 1
     }
 
     /// The middle; halved before the sum, which then cannot overflow.
     #[inline(always)]
     pub(super) fn center(&self) -> Vec4 {
-        self.min * 0.5 + self.max * 0.5
+        let Bounds { min, max } = self.bounds();
+        min * 0.5 + max * 0.5
     }
 }
 
@@ -134,7 +153,7 @@ impl Extents {
     pub(super) fn of(refs: &[PrimitiveRef]) -> Self {
         let mut all = Self::EMPTY;
         for r in refs {
-            all.bounds.grow(r.min, r.max);
+            all.bounds = all.bounds.union(&r.bounds());
             let center = r.center();
             all.centers.grow(center, center);
         }

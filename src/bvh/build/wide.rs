@@ -19,8 +19,8 @@ pub(super) fn build(
 ) -> Option<Subtree> {
     let count = range.len();
     if count <= SERIAL || rule.is_leaf(count) {
-        let mut chunk = Chunk::with_capacity(count);
         let primitives = range.refs.iter().map(|r| rule.primitives(r)).sum();
+        let mut chunk = Chunk::with_capacity(primitives);
         let root = add(&mut chunk, range, rule, depth, 0);
         watch.advance(primitives)?;
         return Some(Subtree::Chunk { chunk, root });
@@ -76,7 +76,7 @@ fn add_leaf(chunk: &mut Chunk, range: &Range<'_>, rule: &Rule<'_>, parent: u32) 
     {
         return add_group(chunk, runs, parent);
     }
-    let ids = range.refs.iter().map(PrimitiveRef::id);
+    let ids = range.refs.iter().flat_map(PrimitiveRef::ids);
     chunk.add_leaf(ids, &range.extents.bounds)
 }
 
