@@ -9,6 +9,7 @@ mod heuristic;
 mod lanes;
 mod path_sampler;
 mod scramble;
+mod turns;
 mod warp;
 
 pub use bilinear::Bilinear;

@@ -4,6 +4,7 @@ use glam::Vec2;
 
 use super::digital_net::{index_in_pair, point};
 use super::scramble::{mix_32, mix_64, scramble, shuffle};
+use super::turns::turn;
 use super::warp::LATTICE_CELL;
 
 pub use lanes::PathSamplerLanes;
@@ -152,8 +153,8 @@ impl PathSampler {
 
     /// The same for a path that shares its light with the others of a cluster: from its scattering at
     /// the first surface on, sample i of all paths of a cluster takes the next `member.size` points of
-    /// one sequence. Which path takes which changes from sample to sample, so that each has points
-    /// from everywhere.
+    /// one sequence. Which path takes which changes from sample to sample, so that the points of
+    /// each are even too.
     pub fn in_cluster(
         seed: u64,
         (pixel, sample): ([u32; 2], u32),
@@ -170,7 +171,7 @@ impl PathSampler {
             return Self { own, shared: own };
         }
         let of_cluster = Sequence::new(seed ^ OF_CLUSTERS, first, sample, replicates);
-        let turn = (of_cluster.index & (size - 1)).reverse_bits() >> (32 - size.ilog2());
+        let turn = turn(size, of_cluster.index);
         let shared = Sequence {
             index: of_cluster.index.wrapping_mul(size) | (number ^ turn),
             ..of_cluster

@@ -270,3 +270,44 @@ fn the_paths_of_a_cluster_draw_from_one_net() {
         }
     }
 }
+
+/// The first 2ⁿ points of one path of a cluster, in the pairs that matter most, are the same number in
+/// every elementary interval of area 2⁻ⁿ⁺⁴.
+#[test]
+fn the_points_of_one_path_of_a_cluster_are_even() {
+    const GAP: u32 = 4;
+    for size in [2, 4, 8, 16] {
+        for (bounce, slot) in [
+            (0, Slot::Scatter),
+            (1, Slot::Scatter),
+            (1, Slot::LightPoint(0)),
+        ] {
+            let member = Member {
+                first: [3, 8],
+                number: size - 1,
+                size,
+            };
+            let points: Vec<_> = (0..4096)
+                .map(|sample| {
+                    PathSampler::in_cluster(6, ([4, 8], sample), 1, member).get_2d(bounce, slot)
+                })
+                .collect();
+            for levels in GAP + 1..=12 {
+                let points = &points[..1 << levels];
+                for columns in 0..=levels - GAP {
+                    let cells = [1_usize << columns, 1 << (levels - GAP - columns)];
+                    let mut counts = vec![0; cells[0] * cells[1]];
+                    for u in points {
+                        let x = (u.x * cells[0] as f32) as usize;
+                        let y = (u.y * cells[1] as f32) as usize;
+                        counts[x * cells[1] + y] += 1;
+                    }
+                    assert!(
+                        counts.iter().all(|&count| count == 1 << GAP),
+                        "{size} paths, {slot:?} {bounce}, 2^{levels} points, {cells:?}"
+                    );
+                }
+            }
+        }
+    }
+}
