@@ -52,7 +52,9 @@
 //!   the scattered ray by multiple importance. A constant sky is left to the scattered ray.
 //! - The paths of a cluster of up to 16 pixels ([`film::Cluster`]) share the light that leaves the
 //!   second diffuse surface of each, weighted so that the mean stays; what they draw for it are points
-//!   of one net ([`sampling::PathSampler::in_cluster`]). Only in mode best.
+//!   of one net ([`sampling::PathSampler::in_cluster`]). Only in mode best. Under a constant sky what the
+//!   weights fall short of their mean corrects the sum (`integrator/furnace.rs`); samples may be negative
+//!   there.
 //! - Diffuse vertices that see an area light through mirrors or glass aim some of their rays at it: light
 //!   paths, traced when the scene is prepared, have told where ([`guide`]).
 //! - Roulette lets every path of at least a quarter of the full throughput live.

@@ -5,9 +5,9 @@
 //! If everything shone like the sky, as in a white furnace, the receiver would take in the sky times
 //! the sum of weights, and that sum is all that would be noisy. So
 //!
-//! β · openness · sky · (1 − sum of weights)
+//! βⱼ · openness · sky · (1 − sum of weights)
 //!
-//! is added, whose mean is 0. `openness` says how much of the furnace there is: the part of a few rays
+//! is added, whose mean is 0 (βⱼ as there). `openness` says how much of the furnace there is: the part of a few rays
 //! that find the sky, drawn apart from all else, or the means would not part. Where it is 1 no noise of
 //! the weights is left; a closed room, where the weights vary by more than the light, is spared.
 //!

@@ -4,6 +4,7 @@ use std::time::Instant;
 use super::RenderJob;
 use super::adaptive::Schedule;
 use super::pass::{Stop, render_pass};
+use super::refinement::is_asked_for;
 use super::workers::Workers;
 use crate::camera::RayCamera;
 use crate::color::Rgb;
@@ -36,7 +37,7 @@ pub struct Exposure {
 }
 
 impl Workbench {
-    /// Prepares the scene of `job`; the first hierarchy is the one that is used.
+    /// Prepares the scene of `job`, with its first hierarchy ([`Self::refine`]).
     pub fn new(job: &RenderJob) -> Self {
         let settings = job.settings.clone();
         let workers = Workers::new(settings.thread_count(), false);
@@ -69,6 +70,19 @@ impl Workbench {
     /// Seconds that the preparation took.
     pub fn build_seconds(&self) -> f64 {
         self.build_seconds
+    }
+
+    /// Puts the refined hierarchy in the place of the first, if the settings ask for one that a session
+    /// would come to. Returns the seconds that this took.
+    pub fn refine(&mut self) -> f64 {
+        if !is_asked_for(&self.settings) || self.scene.aggregate().is_refined() {
+            return 0.0;
+        }
+        let started = Instant::now();
+        let go_on = |_| ControlFlow::Continue(());
+        let refined = self.workers.install(|| self.scene.refined(&go_on));
+        self.scene = refined.expect("nothing asks it to stop");
+        started.elapsed().as_secs_f64()
     }
 
     /// An empty picture of the job's settings, but for `mode` and `seed`.

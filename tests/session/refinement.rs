@@ -1,7 +1,7 @@
 //! The hierarchy gets better while the picture renders, and the picture does not change.
 
 use softbox::bvh::{BvhKind, BvhQuality};
-use softbox::session::TreeState;
+use softbox::session::{TreeState, Workbench};
 
 use super::*;
 
@@ -180,4 +180,24 @@ fn another_scene_ends_a_refinement() {
     let primitives = session.prepared().expect("it rendered").shapes().len();
     assert!(primitives < 100, "the small scene stays: {primitives}");
     assert!(bits(&finish(&session)) == bits(&render(last, false)));
+}
+
+#[test]
+fn a_workbench_refines_once_and_changes_no_bit() {
+    let scene = bumpy_scene();
+    for (quality, refines) in [(BvhQuality::Standard, false), (BvhQuality::High, true)] {
+        let mut bench = Workbench::new(&small_job(&scene, 2, quality));
+        let picture = |bench: &Workbench| {
+            let mut exposure = bench.begin(Mode::Best, 3);
+            assert!(bench.advance(&mut exposure, 2, &|| false));
+            let counts = exposure.counts();
+            (exposure.image(), counts.trace.box_tests)
+        };
+        let (first, boxes) = picture(&bench);
+        assert_eq!(bench.refine() > 0.0, refines);
+        assert_eq!(bench.refine(), 0.0);
+        let (second, fewer) = picture(&bench);
+        assert_eq!(first.pixels(), second.pixels());
+        assert_eq!(fewer < boxes, refines);
+    }
 }

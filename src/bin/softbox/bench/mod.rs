@@ -2,7 +2,8 @@
 //!
 //! - A picture goes on from one number of samples to the next; nothing is rendered twice.
 //! - Modes take turns at every number of samples, so that what disturbs the machine disturbs all.
-//! - Time is processor time of the workers. Building and scoring are not part of it.
+//! - Time is processor time of the workers. Building, refining the hierarchy (as a render would in the
+//!   background) and scoring are not part of it.
 //! - The reference comes from another estimator and other seeds, in two halves whose difference
 //!   tells its noise, which is subtracted; or from a file.
 

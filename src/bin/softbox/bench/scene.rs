@@ -38,7 +38,7 @@ pub(super) fn measure(
             "The camera cannot see: eye and target must differ, all numbers be finite, and the angle lie between 0 and 180 degrees."
         )));
     }
-    let bench = Workbench::new(&RenderJob {
+    let mut bench = Workbench::new(&RenderJob {
         scene: Arc::clone(&scene),
         camera,
         settings: settings.clone(),
@@ -48,6 +48,7 @@ pub(super) fn measure(
     if !bench.advance(&mut first_pass, 1, stop) {
         return Ok(None);
     }
+    let refine_seconds = bench.refine();
     let given = given.or_else(|| {
         let recipe = Recipe {
             mode: args.chosen_reference_mode(),
@@ -89,6 +90,7 @@ pub(super) fn measure(
         load_seconds,
         build_seconds: bench.build_seconds(),
         first_pass_seconds: first_pass.wall_seconds(),
+        refine_seconds,
         reference: reference_facts,
         is_complete: !stop(),
     };

@@ -7,7 +7,7 @@ use super::report::{Comparison, Method, SceneReport};
 /// Writes the figures of one scene for people.
 pub(super) fn write(out: &mut impl Write, report: &SceneReport) -> Result<()> {
     let plural = if report.threads == 1 { "" } else { "s" };
-    writeln!(
+    write!(
         out,
         "{}: {}x{}, depth {}, {} thread{plural}, {}; loaded in {:.3} s, built in {:.3} s, first pass {:.3} s",
         report.scene,
@@ -20,6 +20,10 @@ pub(super) fn write(out: &mut impl Write, report: &SceneReport) -> Result<()> {
         report.build_seconds,
         report.first_pass_seconds,
     )?;
+    if report.refine_seconds > 0.0 {
+        write!(out, ", refined in {:.3} s", report.refine_seconds)?;
+    }
+    writeln!(out)?;
     write_reference(out, report)?;
     for method in &report.methods {
         write_method(out, method)?;

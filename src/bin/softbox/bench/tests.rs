@@ -37,6 +37,7 @@ fn report(levels: Vec<LevelFigures>) -> SceneReport {
         load_seconds: 0.0,
         build_seconds: 0.0,
         first_pass_seconds: 0.0,
+        refine_seconds: 0.0,
         reference: ReferenceFacts {
             file: None,
             mode: Some(Mode::Importance.name()),
