@@ -7,9 +7,10 @@
 //!
 //! βⱼ · openness · sky · (1 − sum of weights)
 //!
-//! is added, whose mean is 0 (βⱼ as there). `openness` says how much of the furnace there is: the part of a few rays
-//! that find the sky, drawn apart from all else, or the means would not part. Where it is 1 no noise of
-//! the weights is left; a closed room, where the weights vary by more than the light, is spared.
+//! is added, whose mean is 0 (βⱼ as there). `openness` says how much of the furnace there is: the part
+//! of a few rays that find the sky, drawn apart from all else, or the means would not part. Where it is
+//! 1 no noise of the weights is left; a closed room, where the weights vary by more than the light, is
+//! spared.
 //!
 //! A path by itself has such a sum too, and it is always 1: that is why paths alone have no noise where
 //! the sky is free, and what sharing would lose.
@@ -27,9 +28,8 @@ use crate::sampling::{PathSampler, Slot, cosine_hemisphere};
 pub(super) const PATHS_PER_PROBE: usize = 2;
 
 impl PathTracer<'_> {
-    /// The sky, if the sums of shared light are to be corrected by it. Not with aimed rays, of which
-    /// some are lost where material and true surface disagree.
-    pub(super) fn furnace(&self) -> Option<Rgb> {
+    /// What [`Self::furnace`] has to be.
+    pub(super) fn find_furnace(&self) -> Option<Rgb> {
         let is_on = self.cluster_size > 1
             && shares_sky(self.scene)
             && self.guide.is_none()
@@ -38,8 +38,8 @@ impl PathTracer<'_> {
     }
 
     /// True if `radiance` may be that of a sample: corrected ones may be negative.
-    pub(super) fn is_valid(&self, radiance: Rgb, is_corrected: bool) -> bool {
-        is_valid_radiance(radiance) || is_corrected && radiance.is_finite()
+    pub(super) fn is_valid(&self, radiance: Rgb) -> bool {
+        is_valid_radiance(radiance) || self.furnace.is_some() && radiance.is_finite()
     }
 }
 

@@ -158,6 +158,9 @@ pub struct PathTracer<'a> {
     light_samples_suffice: bool,
     /// Paths in a cluster.
     pub(super) cluster_size: usize,
+    /// The sky, if the sums of shared light are corrected by it ([`super::furnace`]). Not with aimed rays,
+    /// of which some are lost where material and true surface disagree.
+    pub(super) furnace: Option<Rgb>,
     /// Where diffuse vertices aim some of their rays.
     pub(super) guide: Option<&'a Guide>,
     /// The light that all light samples go to, if that is a parallelogram, and their weight.
@@ -171,7 +174,7 @@ impl<'a> PathTracer<'a> {
         let only_parallelogram = plan
             .only_light(scene)
             .and_then(|(light, weight)| Some((scene.light(light).as_parallelogram()?, weight)));
-        Self {
+        let tracer = Self {
             scene,
             camera,
             settings,
@@ -180,6 +183,11 @@ impl<'a> PathTracer<'a> {
             guide: scene.guide().filter(|_| settings.mode == Mode::Best),
             light_samples_suffice: scene.light_samples_suffice(),
             cluster_size: reuse::cluster_size(scene, &settings),
+            furnace: None,
+        };
+        Self {
+            furnace: tracer.find_furnace(),
+            ..tracer
         }
     }
 

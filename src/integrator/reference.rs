@@ -40,12 +40,11 @@ pub fn reference_cluster(
     for (radiance, path) in radiance.iter_mut().zip(&paths) {
         *radiance = path.radiance;
     }
-    let furnace = tracer.furnace();
-    exchange((&paths, furnace), radiance, counts, |ray, counts| {
+    exchange((&paths, tracer.furnace), radiance, counts, |ray, counts| {
         occluded(tracer, ray, counts)
     });
     for radiance in radiance {
-        if !tracer.is_valid(*radiance, furnace.is_some()) {
+        if !tracer.is_valid(*radiance) {
             counts.invalid_samples += 1;
             *radiance = Rgb::ZERO;
         }

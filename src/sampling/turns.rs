@@ -1,6 +1,7 @@
 //! Which of the points of a cluster each of its paths takes.
 
 use super::scramble::mix_32;
+use crate::math::set_bits;
 
 /// Bits of the number of a sample that were searched for: the first 16 384 samples.
 const FOUND: usize = 14;
@@ -25,9 +26,7 @@ const COLUMNS: [[u8; FOUND]; 4] = [
 pub(super) fn turn(size: u32, index: u32) -> u32 {
     let columns = &COLUMNS[size.ilog2() as usize - 1];
     let beyond = index >> FOUND;
-    let mut turn = if beyond == 0 { 0 } else { mix_32(beyond) };
-    for (bit, &column) in columns.iter().enumerate() {
-        turn ^= u32::from(column) * (index >> bit & 1);
-    }
-    turn & (size - 1)
+    let first = if beyond == 0 { 0 } else { mix_32(beyond) };
+    let bits = set_bits(index & ((1 << FOUND) - 1));
+    bits.fold(first, |turn, bit| turn ^ u32::from(columns[bit])) & (size - 1)
 }

@@ -82,9 +82,8 @@ impl Wavefront {
         self.reuse
             .exchange(tracer, &self.samplers, &mut self.radiance, counts);
         radiance.copy_from_slice(&self.radiance[..ids.len()]);
-        let is_corrected = tracer.furnace().is_some();
         for radiance in radiance {
-            if !tracer.is_valid(*radiance, is_corrected) {
+            if !tracer.is_valid(*radiance) {
                 counts.invalid_samples += 1;
                 *radiance = Rgb::ZERO;
             }

@@ -215,11 +215,7 @@ fn correct<L: Lanes>(
     sums: &mut [Vec3Array; MAX_CLUSTER],
 ) {
     let (zero, one) = (L::splat(0.0), L::splat(1.0));
-    let first = row * L::N;
-    let clusters = (reuse.openness.len() - first).min(L::N);
-    let mut openness = [0.0; ROW];
-    openness[..clusters].copy_from_slice(&reuse.openness[first..first + clusters]);
-    let openness = L::load_row(&openness);
+    let openness = L::load_row(&reuse.openness[row]);
     let sky = Vec3Lanes::<L>::splat(sky);
     for member in 0..reuse.members {
         let at = member * reuse.rows + row;

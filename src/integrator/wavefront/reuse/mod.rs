@@ -39,11 +39,11 @@ pub(super) struct Reuse {
     /// (row · members + k) · members + j.
     reach: Vec<[f32; ROW]>,
     rays: Vec<Ray>,
-    /// The sky that corrects what receivers take in ([`PathTracer::furnace`]).
+    /// The sky that corrects what receivers take in ([`super::super::furnace`]).
     furnace: Option<Rgb>,
-    /// By cluster, the part of its probes that find the sky; empty without furnace.
-    openness: Vec<f32>,
-    /// Which number of `reach` each ray is for: row, lane.
+    /// By row, a lane for each cluster: the part of its probes that find the sky. Empty without furnace.
+    openness: Vec<[f32; ROW]>,
+    /// Which number of `reach`, or of `openness`, each ray is for: row, lane.
     asked: Vec<(u32, u32)>,
     occluded: Vec<bool>,
 }
@@ -76,7 +76,7 @@ impl Reuse {
             self.members,
             paths % self.members
         );
-        self.furnace = tracer.furnace();
+        self.furnace = tracer.furnace;
         self.width = run_lanes(tracer.scene.aggregate().isa(), Width);
         self.rows = (paths / self.members).div_ceil(self.width);
         self.bounces.clear();
@@ -169,6 +169,7 @@ impl Reuse {
             };
             run_lanes(isa, reach);
             self.trace(tracer, counts);
+            self.block();
             let take_in = TakeIn {
                 reuse: self,
                 lent,
@@ -186,36 +187,35 @@ impl Reuse {
         samplers: &[PathSampler],
         counts: &mut PathCounts,
     ) {
-        let clusters = samplers.len() / self.members;
-        let mut probes = vec![0.0_f32; clusters];
+        let mut probes = vec![[0.0_f32; ROW]; self.rows];
         self.rays.clear();
         self.asked.clear();
         for (id, sampler) in (0..)
             .zip(samplers)
             .step_by(PATHS_PER_PROBE.min(self.members))
         {
-            let (row, lane) = self.place(id);
             if self.bounces[id as usize] == NONE {
                 continue;
             }
-            let cluster = id as usize / self.members;
-            probes[cluster] += 1.0;
-            if let Some(ray) = self.receivers[row].get(lane).probe(sampler) {
+            let (of_member, lane) = self.place(id);
+            let row = of_member % self.rows;
+            probes[row][lane] += 1.0;
+            if let Some(ray) = self.receivers[of_member].get(lane).probe(sampler) {
                 self.rays.push(ray);
-                self.asked.push((cluster as u32, 0));
+                self.asked.push((row as u32, lane as u32));
             }
         }
-        self.occluded.clear();
-        self.occluded.resize(self.rays.len(), false);
-        let aggregate = tracer.scene.aggregate();
-        aggregate.any_hit(&self.rays, &mut self.occluded, &mut counts.trace);
-        counts.shadow_rays += self.rays.len() as u64;
+        self.trace(tracer, counts);
         self.openness.clear();
-        self.openness.resize(clusters, 0.0);
-        for (&(cluster, _), &occluded) in self.asked.iter().zip(&self.occluded) {
-            self.openness[cluster as usize] += f32::from(u8::from(!occluded));
+        self.openness.resize(self.rows, [0.0; ROW]);
+        for (&(row, lane), &occluded) in self.asked.iter().zip(&self.occluded) {
+            if !occluded {
+                let (row, lane) = (row as usize, lane as usize);
+                self.openness[row][lane] += 1.0;
+            }
         }
-        for (openness, probes) in self.openness.iter_mut().zip(probes) {
+        let all = probes.as_flattened().iter();
+        for (openness, &probes) in self.openness.as_flattened_mut().iter_mut().zip(all) {
             if probes > 0.0 {
                 *openness /= probes;
             }
@@ -223,16 +223,20 @@ impl Reuse {
     }
 
     /// Takes the reach of receivers that do not see the shared vertex.
+    fn block(&mut self) {
+        for (&(row, lane), &occluded) in self.asked.iter().zip(&self.occluded) {
+            if occluded {
+                self.reach[row as usize][lane as usize] = 0.0;
+            }
+        }
+    }
+
+    /// Finds out which of the rays are occluded.
     fn trace(&mut self, tracer: &PathTracer<'_>, counts: &mut PathCounts) {
         self.occluded.clear();
         self.occluded.resize(self.rays.len(), false);
         let aggregate = tracer.scene.aggregate();
         aggregate.any_hit(&self.rays, &mut self.occluded, &mut counts.trace);
         counts.shadow_rays += self.rays.len() as u64;
-        for (&(row, lane), &occluded) in self.asked.iter().zip(&self.occluded) {
-            if occluded {
-                self.reach[row as usize][lane as usize] = 0.0;
-            }
-        }
     }
 }
