@@ -1,4 +1,4 @@
-use glam::Vec4;
+use glam::{Vec3, Vec4};
 
 use crate::math::{Aabb, Ray, gamma};
 
@@ -24,10 +24,19 @@ pub const FAR_MARGIN: f32 = 1.0 + 2.0 * gamma(8);
 const ULP: f32 = f32::EPSILON;
 
 /// The box that stands for `bounds` in the tree: slightly larger on every side, never flat.
+///
+/// Where `bounds` is flat it grows by hardly more than a rounding: what lies in one plane across an
+/// axis is met in that plane, and its own test errs along it only. So a ray that leaves a floor for
+/// good, lifted by its error bound ([`crate::math::offset_origin`]), is above its box.
 #[inline]
 pub fn padded(bounds: Aabb) -> Aabb {
-    let largest = bounds.min.abs().max(bounds.max.abs()).max_element();
-    let pad = padding(bounds.extent().max_element(), largest);
+    let extent = bounds.extent();
+    let largest = bounds.min.abs().max(bounds.max.abs());
+    let pad = Vec3::select(
+        extent.cmpeq(Vec3::ZERO),
+        largest * ULP + MIN_PAD,
+        Vec3::splat(padding(extent.max_element(), largest.max_element())),
+    );
     Aabb {
         min: bounds.min - pad,
         max: bounds.max + pad,
@@ -44,15 +53,19 @@ fn padding(extent: f32, largest: f32) -> f32 {
 #[inline(always)]
 pub fn padded_four(boxes: &mut [[Vec4; 2]; 3]) {
     let [[x0, x1], [y0, y1], [z0, z1]] = *boxes;
-    let extent = (x1 - x0).max(y1 - y0).max(z1 - z0);
-    let largest = |lo: Vec4, hi: Vec4| lo.abs().max(hi.abs());
-    let largest = largest(x0, x1).max(largest(y0, y1)).max(largest(z0, z1));
-    let pad = extent * Vec4::splat(PAD) + (largest * Vec4::splat(ULP) + Vec4::splat(MIN_PAD));
-    *boxes = [
-        [x0 - pad, x1 + pad],
-        [y0 - pad, y1 + pad],
-        [z0 - pad, z1 + pad],
-    ];
+    let extents = [x1 - x0, y1 - y0, z1 - z0];
+    let larger = |lo: Vec4, hi: Vec4| lo.abs().max(hi.abs());
+    let larger = [larger(x0, x1), larger(y0, y1), larger(z0, z1)];
+    let extent = extents[0].max(extents[1]).max(extents[2]);
+    let largest = larger[0].max(larger[1]).max(larger[2]);
+    let least = |largest: Vec4| largest * Vec4::splat(ULP) + Vec4::splat(MIN_PAD);
+    let pad = extent * Vec4::splat(PAD) + least(largest);
+    for axis in 0..3 {
+        let is_flat = extents[axis].cmpeq(Vec4::ZERO);
+        let pad = Vec4::select(is_flat, least(larger[axis]), pad);
+        let [lo, hi] = boxes[axis];
+        boxes[axis] = [lo - pad, hi + pad];
+    }
 }
 
 /// A ray prepared for box tests.

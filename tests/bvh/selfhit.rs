@@ -2,7 +2,9 @@
 
 use glam::Vec3;
 use softbox::bvh::BvhSettings;
-use softbox::geometry::{Hit, Shapes, Sphere, triangle_departure, triangle_point_and_error};
+use softbox::geometry::{
+    Aggregate, Hit, Shapes, Sphere, TraceCounts, triangle_departure, triangle_point_and_error,
+};
 use softbox::math::{Ray, offset_origin};
 
 use crate::scenes::{self, Random};
@@ -78,6 +80,48 @@ pub(crate) fn weights(random: &mut Random, start: Start) -> [f32; 3] {
     let mut weights = [near, other, 1.0 - near - other];
     weights.rotate_left(random.below(3));
     weights
+}
+
+#[test]
+fn a_ray_that_leaves_a_floor_for_good_tests_none_of_it() {
+    let mut random = Random::new(3);
+    let sizes = [1e-3, 1.0, 300.0];
+    for (height, size) in [0.0, 1e-3, -0.7, 1000.1]
+        .into_iter()
+        .flat_map(|height| sizes.map(|size| (height, size)))
+    {
+        for axis in 0..3 {
+            let corners = [[-1.0, -1.0], [1.0, -0.5], [0.9, 1.0], [-1.0, 0.3]];
+            let at = |[x, z]: [f32; 2]| {
+                let mut point = Vec3::new(x * size, height, z * size).to_array();
+                point.swap(1, axis);
+                Vec3::from_array(point)
+            };
+            let shapes = Shapes {
+                positions: corners.map(at).to_vec(),
+                triangles: vec![[0, 1, 2], [0, 2, 3]],
+                spheres: Vec::new(),
+            };
+            let floor = Aggregate::build(shapes.clone(), BvhSettings::default()).without_sweep();
+            let normal = Vec3::AXES[axis] * if random.unit() < 0.5 { -1.0 } else { 1.0 };
+            let rays: Vec<Ray> = (0..300)
+                .map(|i| {
+                    let start = [Start::Anywhere, Start::NearEdge, Start::Corner][i % 3];
+                    let vertices = shapes.vertices(i % 2);
+                    let [_, b1, b2] = weights(&mut random, start);
+                    let at = triangle_point_and_error(&vertices, b1, b2);
+                    let (point, error) = triangle_departure(&vertices, b1, b2, at);
+                    let direction = leaving(&mut random, normal);
+                    Ray::new(offset_origin(point, error, normal, direction), direction)
+                })
+                .collect();
+            let mut counts = TraceCounts::default();
+            floor.any_hit(&rays, &mut vec![false; rays.len()], &mut counts);
+            floor.closest_hit(&rays, &mut vec![Hit::MISS; rays.len()], &mut counts);
+            assert_eq!(counts.primitive_tests, 0, "{height} {size} {axis}");
+            assert_eq!(counts.rays, 600);
+        }
+    }
 }
 
 /// How rays that leave a closed mesh go astray.

@@ -43,6 +43,11 @@ impl Bounds {
         products.x + products.y + products.z
     }
 
+    /// True for what lies in one plane across an axis.
+    pub(super) fn is_flat(&self) -> bool {
+        self.min.truncate().cmpeq(self.max.truncate()).any()
+    }
+
     pub(super) fn aabb(&self) -> Aabb {
         Aabb {
             min: self.min.truncate(),
