@@ -10,6 +10,7 @@
 
 mod blocks;
 mod build;
+mod entrance;
 mod expected;
 mod leaves;
 mod node;

@@ -53,12 +53,28 @@ impl<const SIZE: usize> Stack<SIZE> {
         (near, meets): (N::PerSlot, u32),
         children: &[u32; WIDTH],
     ) -> usize {
-        let order = FAR_TO_NEAR[octant % 8][meets as usize % (1 << WIDTH)];
-        let at = top & Self::MASK;
-        N::arrange(order, children, eight(&mut self.references, at));
         if !ANY {
-            N::arrange_near(order, near, eight(&mut self.near, at));
+            let at = top & Self::MASK;
+            N::arrange_near(order(octant, meets), near, eight(&mut self.near, at));
         }
+        self.push_all::<N>(top, octant, meets, children)
+    }
+
+    /// The same without the parameters.
+    #[inline(always)]
+    pub(super) fn push_all<N: NodeTest>(
+        &mut self,
+        top: usize,
+        octant: usize,
+        meets: u32,
+        children: &[u32; WIDTH],
+    ) -> usize {
+        let at = top & Self::MASK;
+        N::arrange(
+            order(octant, meets),
+            children,
+            eight(&mut self.references, at),
+        );
         top + meets.count_ones() as usize
     }
 
@@ -82,6 +98,11 @@ impl<const SIZE: usize> Stack<SIZE> {
         }
         (self.references[top & Self::MASK], top)
     }
+}
+
+#[inline(always)]
+fn order(octant: usize, meets: u32) -> u64 {
+    FAR_TO_NEAR[octant % 8][meets as usize % (1 << WIDTH)]
 }
 
 #[inline(always)]

@@ -1,3 +1,4 @@
+use super::entrance::Entrance;
 use super::leaves::{Leaves, Work};
 use super::node::{LEAF, WideNode};
 use super::simd::{Kernel, NodeTest, prefetch};
@@ -74,6 +75,18 @@ impl Arrivals {
     }
 }
 
+/// Rays that have not started yet.
+#[derive(Debug, Default)]
+struct Queue {
+    /// The first that nobody has looked at.
+    next: usize,
+    /// The rays from `first` on have been looked at together.
+    first: usize,
+    entrance: Entrance,
+    /// A bit for each of them that goes on below the root.
+    waiting: u32,
+}
+
 /// Takes the number of the lowest bit out of a set.
 #[inline(always)]
 fn take(set: &mut u32) -> usize {
@@ -85,18 +98,63 @@ fn take(set: &mut u32) -> usize {
 impl<L: Leaves, F: FnMut(usize, Option<&L::Query>), const ANY: bool, const STACK: usize>
     Stream<'_, L, F, ANY, STACK>
 {
-    /// The number of the next ray that can meet anything; answers those that cannot.
+    /// The number of the next ray that can meet anything, and if `ANY` what it meets of the root;
+    /// answers those before it.
     #[inline(always)]
-    fn next(&mut self, next: &mut usize) -> Option<usize> {
-        while let Some(ray) = self.rays.get(*next) {
-            let number = *next;
-            *next += 1;
+    fn next<N: NodeTest>(&mut self, queue: &mut Queue, work: &mut Work) -> Option<(usize, u32)> {
+        if ANY {
+            return self.next_below_root::<N>(queue, work);
+        }
+        while let Some(ray) = self.rays.get(queue.next) {
+            let number = queue.next;
+            queue.next += 1;
             if SlabRay::can_meet(ray) {
-                return Some(number);
+                return Some((number, 0));
             }
             (self.answer)(number, None);
         }
         None
+    }
+
+    #[inline(always)]
+    fn next_below_root<N: NodeTest>(
+        &mut self,
+        queue: &mut Queue,
+        work: &mut Work,
+    ) -> Option<(usize, u32)> {
+        while queue.waiting == 0 {
+            let first = queue.next;
+            let rest = self.rays.get(first..).filter(|rest| !rest.is_empty())?;
+            let entrance = Entrance::new::<N::Rays>(&self.bvh.nodes()[0], rest);
+            work.nodes += u64::from(entrance.valid().count_ones());
+            queue.next += entrance.count();
+            (queue.first, queue.waiting) = (first, entrance.go_on());
+            let mut others = entrance.all() & !queue.waiting;
+            while others != 0 {
+                (self.answer)(first + take(&mut others), None);
+            }
+            queue.entrance = entrance;
+        }
+        let lane = take(&mut queue.waiting);
+        Some((queue.first + lane, queue.entrance.meets(lane)))
+    }
+
+    /// Lets a ray start in `lane`: at the root, or if `ANY` at the first that it `meets` below.
+    #[inline(always)]
+    fn start<N: NodeTest>(
+        &self,
+        lane: &mut Lane<L::Query>,
+        stack: &mut Stack<STACK>,
+        (ray, meets): (usize, u32),
+    ) {
+        self.renew(lane, ray);
+        if ANY {
+            let octant = lane.slab.octant as usize;
+            let children = &self.bvh.nodes()[0].children;
+            let top = stack.push_all::<N>(BOTTOM, octant, meets, children);
+            let (at, top) = stack.pop::<ANY>(top, lane.limit);
+            (lane.at, lane.top) = (at, top as u32);
+        }
     }
 
     /// Ray `number` at the root.
@@ -137,21 +195,30 @@ impl<L: Leaves, F: FnMut(usize, Option<&L::Query>), const ANY: bool, const STACK
     fn run<N: NodeTest>(mut self) -> Work {
         let (bvh, leaves) = (self.bvh, self.leaves);
         let mut work = Work::default();
-        let mut next = 0;
-        let Some(first) = self.next(&mut next) else {
+        let mut queue = Queue::default();
+        let Some(first) = self.next::<N>(&mut queue, &mut work) else {
             return work;
         };
-        let mut lanes = [self.lane(first); LANES];
+        let mut lanes = [self.lane(first.0); LANES];
         let mut stacks = [Stack::<STACK>::EMPTY; LANES];
-        // Lanes whose next step is at a node, and at a leaf; a bit each.
-        let (mut at_node, mut at_leaf) = (1_u32, 0);
-        for (number, lane) in lanes.iter_mut().enumerate().skip(1) {
-            if let Some(ray) = self.next(&mut next) {
-                *lane = self.lane(ray);
-                at_node |= 1 << number;
-            }
-        }
         let mut arrivals = Arrivals::new(bvh, leaves);
+        // Lanes whose next step is at a node, and at a leaf; a bit each.
+        let (mut at_node, mut at_leaf) = (0_u32, 0);
+        let mut next = Some(first);
+        for (number, (lane, stack)) in lanes.iter_mut().zip(&mut stacks).enumerate() {
+            let Some(ray) = next
+                .take()
+                .or_else(|| self.next::<N>(&mut queue, &mut work))
+            else {
+                break;
+            };
+            self.start::<N>(lane, stack, ray);
+            arrivals.put(number, lane.at);
+            at_node |= 1 << number;
+        }
+        at_leaf |= arrivals.not_at_node;
+        at_node &= !arrivals.not_at_node;
+        arrivals.not_at_node = 0;
         while at_node | at_leaf != 0 {
             work.nodes += u64::from(at_node.count_ones());
             let mut now = at_node;
@@ -193,11 +260,15 @@ impl<L: Leaves, F: FnMut(usize, Option<&L::Query>), const ANY: bool, const STACK
                 let number = take(&mut now);
                 let lane = &mut lanes[number % LANES];
                 (self.answer)(lane.ray as usize, Some(&lane.query));
-                if let Some(ray) = self.next(&mut next) {
-                    self.renew(lane, ray);
+                if let Some(ray) = self.next::<N>(&mut queue, &mut work) {
+                    self.start::<N>(lane, &mut stacks[number % LANES], ray);
+                    arrivals.put(number, lane.at);
                     at_node |= 1 << number;
                 }
             }
+            at_leaf |= arrivals.not_at_node;
+            at_node &= !arrivals.not_at_node;
+            arrivals.not_at_node = 0;
         }
         work
     }
