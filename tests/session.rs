@@ -1,5 +1,7 @@
 //! Test F8: the film does not depend on threads, pauses or passes; jobs replace each other cleanly.
 
+#[path = "session/adaptive.rs"]
+mod adaptive;
 #[path = "session/noise.rs"]
 mod noise;
 #[path = "session/refinement.rs"]

@@ -145,7 +145,8 @@ impl Workbench {
             if !is_whole {
                 return false;
             }
-            schedule.arrive(target, &mut exposure.film, settings);
+            let film = (&mut exposure.film, tracer.cluster_size());
+            schedule.arrive(target, film, settings);
         }
         true
     }

@@ -1,3 +1,4 @@
+use super::companions::Companions;
 use super::set_limits;
 use crate::film::{Film, Pooled};
 use crate::settings::{Adaptive, Mode, RenderSettings};
@@ -6,10 +7,14 @@ use crate::study::student_975;
 /// Half the first code of an 8-bit picture: darker differences are not seen.
 const DARK_FLOOR: f64 = 0.5 / 255.0;
 
-/// Opens the pixels that are not good enough and all their neighbours, and ends the others; to be
-/// asked when all open pixels have the same number of samples. Pixels that were ended are looked at
+/// Opens the pixels that are not good enough, all their neighbours and the companions of both in
+/// clusters of `cluster_size` pixels, and ends the others; to be asked when all open pixels have the same number of samples. Pixels that were ended are looked at
 /// again: what their neighbours have found since counts for them too.
-pub(super) fn decide(film: &mut Film, adaptive: &Adaptive, settings: &RenderSettings) {
+pub(super) fn decide(
+    (film, cluster_size): (&mut Film, usize),
+    adaptive: &Adaptive,
+    settings: &RenderSettings,
+) {
     let least = if settings.mode == Mode::Hemisphere {
         256
     } else {
@@ -32,7 +37,12 @@ pub(super) fn decide(film: &mut Film, adaptive: &Adaptive, settings: &RenderSett
             }
         }
     }
-    set_limits(film, |place| match is_open[place] {
+    let companions = Companions::new(film, cluster_size);
+    let mut is_group_open = vec![false; companions.len()];
+    for (place, _) in is_open.iter().enumerate().filter(|(_, is_open)| **is_open) {
+        is_group_open[companions.of(place)] = true;
+    }
+    set_limits(film, |place| match is_group_open[companions.of(place)] {
         true => u32::MAX,
         false => rows.count(place % width, place / width),
     });

@@ -1,6 +1,8 @@
 //! When adaptive sampling ends a pixel, or how many samples it gets. Decisions are made between
-//! passes, from the film alone, so that they depend neither on threads nor on time.
+//! passes, from the film alone, so that they depend neither on threads nor on time. Pixels that share
+//! light are traced together anyway, so they get the same samples.
 
+mod companions;
 mod course;
 mod even;
 mod least_error;

@@ -52,11 +52,11 @@ impl Schedule {
     }
 
     /// Takes note of a pass that has brought every pixel of `film` to `target` samples or its limit,
-    /// and decides, if it is time to.
+    /// and decides, if it is time to. Paths are traced in clusters of `cluster_size`.
     pub(in crate::session) fn arrive(
         &mut self,
         target: u32,
-        film: &mut Film,
+        (film, cluster_size): (&mut Film, usize),
         settings: &RenderSettings,
     ) {
         let bound = self.bound(settings);
@@ -70,8 +70,8 @@ impl Schedule {
         };
         match adaptive.goal {
             _ if !is_decision => {}
-            AdaptiveGoal::LeastError => self.allot(film, &adaptive, settings),
-            AdaptiveGoal::Even => even::decide(film, &adaptive, settings),
+            AdaptiveGoal::LeastError => self.allot((film, cluster_size), &adaptive, settings),
+            AdaptiveGoal::Even => even::decide((film, cluster_size), &adaptive, settings),
             AdaptiveGoal::Course => course::close_pixels(film, adaptive.tolerance),
         }
         if adaptive.goal != AdaptiveGoal::LeastError {
@@ -80,7 +80,7 @@ impl Schedule {
         }
     }
 
-    fn allot(&mut self, film: &mut Film, adaptive: &Adaptive, settings: &RenderSettings) {
+    fn allot(&mut self, film: (&mut Film, usize), adaptive: &Adaptive, settings: &RenderSettings) {
         let end = settings.stop.samples_per_pixel.unwrap_or(u32::MAX);
         let mean = self.allotted.map_or(self.done, |allotted| allotted.mean);
         let next = next_multiple(mean, adaptive.batch).min(end);

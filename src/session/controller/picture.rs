@@ -253,7 +253,8 @@ impl Picture {
         if is_complete {
             self.summary = self.film.summary();
             self.last_pass = Some((target - done, std::mem::take(&mut self.pass_seconds)));
-            self.schedule.arrive(target, &mut self.film, settings);
+            let film = (&mut self.film, tracer.cluster_size());
+            self.schedule.arrive(target, film, settings);
         }
     }
 

@@ -82,10 +82,33 @@ fn a_raised_budget_goes_on_as_if_it_had_been_there() {
             }
         }
     }
-    schedule.arrive(64, &mut film, &settings(64));
+    schedule.arrive(64, (&mut film, 1), &settings(64));
     assert!(schedule.has_all_samples(&settings(64)));
     assert!(!schedule.has_all_samples(&settings(128)));
-    schedule.arrive(schedule.bound(&settings(128)), &mut film, &settings(128));
+    let bound = schedule.bound(&settings(128));
+    schedule.arrive(bound, (&mut film, 1), &settings(128));
     assert!(!schedule.has_all_samples(&settings(128)));
     assert_eq!(film.pixel(3, 3).map(PixelStats::limit), Some(128));
+}
+
+/// Pixels that are traced together get the same, and the mean stays what it is.
+#[test]
+fn companions_get_the_same_samples() {
+    let settings = settings(AdaptiveGoal::LeastError, 512);
+    let mut film = picture(64);
+    Schedule::default().arrive(64, (&mut film, 16), &settings);
+    let limit = |[x, y]: [u32; 2]| film.pixel(x, y).map(PixelStats::limit);
+    let mut limits = std::collections::HashSet::new();
+    let mut clusters = film.tiles().iter().flat_map(|tile| tile.clusters(16));
+    assert!(clusters.all(|cluster| {
+        let mut of_cluster = cluster.pixels().filter_map(limit);
+        let first = of_cluster.next();
+        limits.extend(first);
+        first.is_none_or(|first| of_cluster.all(|other| other == first))
+    }));
+    assert!(limits.len() > 3, "{limits:?}");
+    let pixels = film.tiles().iter().flat_map(|tile| tile.pixels());
+    let total: u64 = pixels.map(|pixel| u64::from(pixel.limit())).sum();
+    let most = 128 * u64::from(WIDTH) * 32;
+    assert!((most * 9 / 10..=most).contains(&total), "{total} of {most}");
 }

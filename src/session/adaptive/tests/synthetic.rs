@@ -94,7 +94,7 @@ pub(super) fn film_at_the_end(
                 }
             }
         }
-        schedule.arrive(target, &mut film, settings);
+        schedule.arrive(target, (&mut film, 1), settings);
     }
     film
 }
