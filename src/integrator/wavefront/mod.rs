@@ -27,7 +27,8 @@ use shade::Shade;
 use start::Start;
 
 /// Paths in one batch: enough to keep the tracing kernel busy, few enough that a batch ends within
-/// some milliseconds when a render is cancelled and that the arrays stay in the cache.
+/// some milliseconds when a render is cancelled and that the arrays stay in the cache; `bench/wavefront`
+/// has what other sizes, and other shapes of the wavefront, cost.
 pub const BATCH_SIZE: usize = 2048;
 
 /// Direct light rays that wait to be traced together, at most; more samples a vertex than one take a
