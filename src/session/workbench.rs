@@ -108,9 +108,10 @@ impl Workbench {
         }
     }
 
-    /// Takes samples until each pixel of `exposure` has `samples` of them (adaptive sampling may
-    /// close some before, or make that the mean; then `samples` are multiples of its batch) or until `stop`, which is asked before each batch of paths. False when
-    /// stopped; some pixels may then have more samples than others.
+    /// Takes samples until each pixel of `exposure` has `samples` of them (adaptive sampling may close
+    /// some before, or make that the mean; then `samples` are multiples of its batch) or until `stop`,
+    /// which is asked before each batch of paths. False when stopped; some pixels may then have more
+    /// samples than others.
     pub fn advance(
         &self,
         exposure: &mut Exposure,

@@ -8,8 +8,9 @@ use crate::study::student_975;
 const DARK_FLOOR: f64 = 0.5 / 255.0;
 
 /// Opens the pixels that are not good enough, all their neighbours and the companions of both in
-/// clusters of `cluster_size` pixels, and ends the others; to be asked when all open pixels have the same number of samples. Pixels that were ended are looked at
-/// again: what their neighbours have found since counts for them too.
+/// clusters of `cluster_size` pixels, and ends the others; to be asked when all open pixels have the
+/// same number of samples. Pixels that were ended are looked at again: what their neighbours have found
+/// since counts for them too.
 pub(super) fn decide(
     (film, cluster_size): (&mut Film, usize),
     adaptive: &Adaptive,
