@@ -153,8 +153,8 @@ impl AreaLight {
         let intensity = part.area() * luminance(self.radiance);
         let normal = part.normal()?;
         match part {
-            Part::Triangle { corners, .. } => {
-                EmissionBounds::flat(corners, normal, intensity, self.two_sided)
+            Part::Triangle(triangle) => {
+                EmissionBounds::flat(&triangle.corners, normal, intensity, self.two_sided)
             }
             Part::Parallelogram(whole) => {
                 EmissionBounds::flat(&whole.corners(), normal, intensity, self.two_sided)
@@ -185,8 +185,7 @@ impl AreaLight {
         by_area.pmf(part) * self.pdf_part(part, from, wi, hit)
     }
 
-    /// A point of part `index`: parallelograms by [`Parallelogram::sample`], triangles evenly by area;
-    /// all by area with [`AreaDensity::Course`].
+    /// A point of part `index`: by [`Part::sample`], evenly by area with [`AreaDensity::Course`].
     pub(super) fn sample_part(
         &self,
         index: usize,
@@ -195,18 +194,19 @@ impl AreaLight {
     ) -> Option<LightSample> {
         let part = &self.parts[index];
         let normal = part.normal()?;
-        let warped = self.warped(part);
-        let (point, pdf) = match warped {
-            Some(whole) => whole.sample(from, u)?,
-            None => (part.even_point(u), 1.0),
+        let (point, pdf) = match self.density {
+            AreaDensity::Correct => {
+                let (point, pdf) = part.sample(from, u)?;
+                (point, Some(pdf))
+            }
+            AreaDensity::Course => (part.even_point(u), None),
         };
         let (wi, distance) = direction_to(from.point, point)?;
         let cos = self.emission_cosine(normal, wi);
-        let pdf = match warped {
-            _ if cos.is_nan() || cos <= 0.0 => return None,
-            Some(_) => pdf,
-            None => self.even_pdf(part, distance, cos),
-        };
+        if cos.is_nan() || cos <= 0.0 {
+            return None;
+        }
+        let pdf = pdf.unwrap_or_else(|| course_pdf(part, distance, cos));
         Some(LightSample {
             wi,
             distance,
@@ -231,40 +231,22 @@ impl AreaLight {
         if cos.is_nan() || cos <= 0.0 || part.area() <= 0.0 {
             return 0.0;
         }
-        match self.warped(part) {
-            Some(whole) => whole.pdf(from, hit.point),
-            None => self.even_pdf(part, hit.distance, cos),
+        match self.density {
+            AreaDensity::Correct => part.pdf(from, hit.point),
+            AreaDensity::Course => course_pdf(part, hit.distance, cos),
         }
     }
 
-    /// True for a single parallelogram: of several parts one that is near may be chosen rarely.
+    /// True for a single part: of several one that is near may be chosen rarely.
     pub(super) fn is_bounded(&self) -> bool {
-        self.only_parallelogram().is_some()
+        self.density == AreaDensity::Correct && self.parts.len() == 1
     }
 
     /// The parallelogram that is all of the light and is not sampled evenly by area.
     pub(super) fn only_parallelogram(&self) -> Option<&Parallelogram> {
-        match &self.parts[..] {
-            [only] => self.warped(only),
+        match (&self.parts[..], self.density) {
+            ([Part::Parallelogram(only)], AreaDensity::Correct) => Some(only),
             _ => None,
-        }
-    }
-
-    /// The parallelogram that is not sampled evenly by area.
-    fn warped<'a>(&self, part: &'a Part) -> Option<&'a Parallelogram> {
-        match (part, self.density) {
-            (Part::Parallelogram(whole), AreaDensity::Correct) => Some(whole),
-            _ => None,
-        }
-    }
-
-    /// Per steradian, for points evenly spread over the area of `part`.
-    fn even_pdf(&self, part: &Part, distance: f32, cos: f32) -> f32 {
-        // One factor at a time: the square of a tiny distance would vanish.
-        let per_distance = distance / (part.area() * cos);
-        match self.density {
-            AreaDensity::Correct => per_distance * distance,
-            AreaDensity::Course => per_distance,
         }
     }
 
@@ -286,4 +268,9 @@ impl AreaLight {
         let cos = -normal.dot(wi);
         if self.two_sided { cos.abs() } else { cos }
     }
+}
+
+/// Per steradian, for points evenly spread over the area of `part`, as the course's program has it.
+fn course_pdf(part: &Part, distance: f32, cos: f32) -> f32 {
+    distance / (part.area() * cos)
 }

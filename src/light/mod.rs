@@ -22,6 +22,8 @@ mod spot;
 #[cfg(test)]
 mod tests;
 mod tree;
+mod triangle;
+mod triangle_warp;
 
 use glam::{Vec2, Vec3};
 

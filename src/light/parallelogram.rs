@@ -4,8 +4,8 @@ use super::LightSampleContext;
 use super::corner_warp::CornerWarp;
 use super::cylinder_warp::{CylinderWarp, EdgeFrame};
 
-/// Points nearer than this multiple of the longer edge are near: the density of [`CornerWarp`] no longer
-/// follows the light there, that of [`CylinderWarp`] does. Not a round number: whole surfaces would lie at
+/// Points nearer than this multiple of the longest edge are near: the density of [`CornerWarp`] no longer
+/// follows the light there, that of [`CylinderWarp`] does; likewise for triangles. Not a round number: whole surfaces would lie at
 /// just that distance, and rounding would decide.
 pub(crate) const NEAR: f32 = 1.037;
 

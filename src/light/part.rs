@@ -1,9 +1,10 @@
 use glam::{Vec2, Vec3};
 
+use super::LightSampleContext;
 use super::merge::{Partner, parallelograms};
 use super::parallelogram::Parallelogram;
+use super::triangle::Triangle;
 use crate::geometry::Shapes;
-use crate::sampling::uniform_triangle;
 
 /// A flat part of an area light, counter-clockwise seen from its front.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,31 +25,15 @@ pub enum AreaPart {
 /// A part as it is sampled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Part {
-    Triangle {
-        corners: [Vec3; 3],
-        /// Unit; nothing without area.
-        normal: Option<Vec3>,
-        /// Of one side.
-        area: f32,
-    },
+    Triangle(Triangle),
     Parallelogram(Parallelogram),
 }
 
 impl Part {
-    fn triangle(corners: [Vec3; 3]) -> Self {
-        let [a, b, c] = corners;
-        let cross = (b - a).cross(c - a);
-        Self::Triangle {
-            corners,
-            normal: cross.try_normalize(),
-            area: 0.5 * cross.length(),
-        }
-    }
-
     /// Of one side.
     pub(super) fn area(&self) -> f32 {
         match self {
-            Self::Triangle { area, .. } => *area,
+            Self::Triangle(triangle) => triangle.area,
             Self::Parallelogram(whole) => whole.area,
         }
     }
@@ -56,7 +41,7 @@ impl Part {
     /// Unit; nothing for a triangle without area.
     pub(super) fn normal(&self) -> Option<Vec3> {
         match self {
-            Self::Triangle { normal, .. } => *normal,
+            Self::Triangle(triangle) => triangle.normal,
             Self::Parallelogram(whole) => Some(whole.normal),
         }
     }
@@ -64,20 +49,32 @@ impl Part {
     /// A point evenly spread over the area.
     pub(super) fn even_point(&self, u: Vec2) -> Vec3 {
         match self {
-            Self::Triangle {
-                corners: [a, b, c], ..
-            } => {
-                let (b1, b2) = uniform_triangle(u);
-                a + b1 * (b - a) + b2 * (c - a)
-            }
+            Self::Triangle(triangle) => triangle.even_point(u),
             Self::Parallelogram(whole) => whole.at(u),
+        }
+    }
+
+    /// A point for `u` in [0, 1)², distributed so that what it sends counts, and its density per steradian;
+    /// `None` where nothing of the part counts.
+    pub(super) fn sample(&self, from: &LightSampleContext, u: Vec2) -> Option<(Vec3, f32)> {
+        match self {
+            Self::Triangle(triangle) => triangle.sample(from, u),
+            Self::Parallelogram(whole) => whole.sample(from, u),
+        }
+    }
+
+    /// The density per steradian with which [`Self::sample`] makes `point`; 0 where it never does.
+    pub(super) fn pdf(&self, from: &LightSampleContext, point: Vec3) -> f32 {
+        match self {
+            Self::Triangle(triangle) => triangle.pdf(from, point),
+            Self::Parallelogram(whole) => whole.pdf(from, point),
         }
     }
 
     /// What others see of it.
     pub(super) fn outline(&self) -> AreaPart {
         match *self {
-            Self::Triangle { corners, .. } => AreaPart::Triangle(corners),
+            Self::Triangle(triangle) => AreaPart::Triangle(triangle.corners),
             Self::Parallelogram(whole) => AreaPart::Parallelogram {
                 corner: whole.corner,
                 edge_1: whole.edge_1,
@@ -102,7 +99,7 @@ pub(super) fn parts_of(shapes: &Shapes, primitives: &[u32]) -> (Vec<Part>, Vec<(
                 parts.len() as u32 - 1
             }
             Partner::None => {
-                parts.push(Part::triangle(triangles[index]));
+                parts.push(Part::Triangle(Triangle::new(triangles[index])));
                 parts.len() as u32 - 1
             }
         };

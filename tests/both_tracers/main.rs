@@ -83,6 +83,13 @@ fn points_beside_a_light_and_on_its_plane() {
 }
 
 #[test]
+fn triangle_light() {
+    for side in scenes::SIDES {
+        check(&scenes::triangle_light(side), &all_settings());
+    }
+}
+
+#[test]
 fn a_light_as_large_as_the_room() {
     check(&scenes::glowing_ceiling(), &all_settings());
 }

@@ -111,6 +111,25 @@ pub(crate) fn glowing_ceiling() -> View {
     into_the_box(builder)
 }
 
+/// One triangle is all that shines.
+pub(crate) fn triangle_light(side: Side) -> View {
+    let mut builder = dark_box("triangle light");
+    let lamp = match side {
+        Side::Front => builder.emitter("lamp", Rgb::new(6.0, 5.0, 4.0)),
+        Side::Both => glowing(&mut builder, 0.4, 5.0),
+    };
+    let corners = [
+        DVec3::new(-0.5, 1.4, -0.6),
+        DVec3::new(0.6, 1.2, -0.4),
+        DVec3::new(0.0, 1.3, 0.7),
+    ];
+    builder.mesh("lamp", corners.to_vec(), &[[0, 1, 2]], lamp);
+    let grey = builder.diffuse("grey", Rgb::splat(0.8));
+    builder.sphere("ball", RIGHT, 0.4, grey);
+    builder.sphere("cut", corners[0], 0.3, grey);
+    into_the_box(builder)
+}
+
 /// A light node without a mesh, upright.
 pub(crate) fn light_node() -> View {
     let mut builder = dark_box("light node");

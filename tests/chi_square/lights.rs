@@ -208,15 +208,33 @@ fn pair() -> (Shapes, Light) {
     (shapes, Light::Area(light))
 }
 
+/// One triangle, more than a half of [`pair`].
+fn triangle() -> (Shapes, Light) {
+    let shapes = Shapes {
+        positions: vec![
+            Vec3::new(-0.4, 1.0, -0.3),
+            Vec3::new(0.5, 1.0, -0.2),
+            Vec3::new(0.1, 1.0, 0.3),
+        ],
+        triangles: vec![[0, 1, 2]],
+        spheres: vec![],
+    };
+    let shape = AreaShape::Triangles {
+        primitives: vec![0],
+    };
+    let light = AreaLight::new(&shapes, shape, Rgb::ONE, false);
+    (shapes, Light::Area(light))
+}
+
 /// Near and far, under the light and beside it, whole and partly below the horizon.
-fn parallelogram_cases() -> Vec<Case> {
+fn flat_cases(what: &str, make: fn() -> (Shapes, Light), height: f32) -> Vec<Case> {
     let places = [
         ("below", Vec3::new(0.1, -0.2, 0.05), 0.5),
         ("aslant", Vec3::new(3.0, 0.7, 0.2), 0.15),
         ("under it", Vec3::new(0.1, 0.9, 0.05), 2.0),
         ("almost on it", Vec3::new(0.1, 0.999, 0.05), 3.0),
         ("under its edge", Vec3::new(0.45, 0.7, 0.1), 1.0),
-        ("near its edge", Vec3::new(0.6, 0.97, 0.1), 0.8),
+        ("near its edge", Vec3::new(0.6, height, 0.1), 0.8),
         ("beside its first edge", Vec3::new(0.1, 0.97, 0.33), 0.8),
     ];
     let normals = [
@@ -228,8 +246,8 @@ fn parallelogram_cases() -> Vec<Case> {
     let mut cases = vec![];
     for (place, point, size) in places {
         for (facing, normal) in normals {
-            let (shapes, light) = pair();
-            let name = format!("pair of triangles {place} {facing}");
+            let (shapes, light) = make();
+            let name = format!("{what} {place} {facing}");
             let from = LightSampleContext { point, normal };
             let view = (Vec3::new(0.05, 1.0, 0.0) - point, size);
             cases.push(lit_case(&name, shapes, light, from, view));
@@ -257,7 +275,9 @@ pub(crate) fn surface_cases() -> Vec<Case> {
             view,
         ));
     }
-    cases.extend(parallelogram_cases());
+    cases.extend(flat_cases("pair of triangles", pair, 0.97));
+    // So near the plane that its corners become needles of the sphere the quadrature misses parts.
+    cases.extend(flat_cases("triangle", triangle, 0.9));
     let above = Vec3::new(0.5, 1.6, 0.1);
     let light = rectangle(AreaDensity::Correct, true);
     cases.push(case(

@@ -219,6 +219,35 @@ pub(crate) fn seen_through_a_lens() -> View {
     View { camera, ..view }
 }
 
+/// A triangle that shines, upright between a ball that it cuts and two walls that it touches; with
+/// `is_lamp` the base of a pyramid all of which shines.
+pub(crate) fn triangles_that_shine(is_lamp: bool) -> View {
+    let mut builder = SceneBuilder::new("triangles that shine");
+    let grey = builder.diffuse("grey", Rgb::splat(0.7));
+    let lamp = glowing(&mut builder);
+    let [a, b, c] = [
+        DVec3::new(-0.4, 0.3, 0.1),
+        DVec3::new(0.6, 0.2, -0.2),
+        DVec3::new(0.1, 1.1, 0.05),
+    ];
+    let top = DVec3::new(0.2, 0.6, 0.4);
+    let faces = [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]];
+    let faces = if is_lamp { &faces[..] } else { &faces[..1] };
+    builder.mesh("lamp", vec![a, b, c, top], faces, lamp);
+    builder.sphere("ball", b, 0.3, grey);
+    builder.quad("on its edge", a, b - a, DVec3::Z, grey);
+    builder.quad("behind", a - DVec3::Z * 0.51, DVec3::X, DVec3::Y, grey);
+    builder.quad(
+        "floor",
+        DVec3::new(-2.0, 0.0, 2.0),
+        DVec3::X * 4.0,
+        DVec3::Z * -4.0,
+        grey,
+    );
+    let target = DVec3::new(0.1, 0.5, 0.0);
+    View::new(builder, DVec3::new(-0.3, 1.2, 3.0), target, 35.0)
+}
+
 /// A ball in a sphere that emits inwards, all far from the origin and in large units.
 pub(crate) fn inside_a_lamp() -> View {
     let mut builder = SceneBuilder::new("lamp");

@@ -1,9 +1,10 @@
 //! Flat lights seen from a point, in double precision.
 
-use glam::{DVec2, DVec3, Vec2};
+use glam::{DVec2, DVec3, Vec2, Vec3};
 
+use super::bilinear::{bilinear_density, bilinear_place, cosine, usable};
 use super::light::LightSample;
-use super::warp;
+use super::triangle_light::Triangle;
 use crate::light::{AreaDensity, AreaLight, AreaPart, LEVEL, NEAR};
 
 /// A point of part `index` of the light, whose directions count by their cosine to `normal`.
@@ -14,37 +15,13 @@ pub(super) fn sample(
     u: Vec2,
 ) -> Option<LightSample> {
     let u = u.as_dvec2();
-    let part = area.part(index);
-    let quad = Quad::new(part, area.density());
-    let (point, front) = match (&quad, part) {
-        (Some(quad), _) => (quad.sample(from, normal, u)?, quad.normal),
-        (None, AreaPart::Triangle(corners)) => {
-            let [a, b, c] = corners.map(|p| p.as_dvec3());
-            let (b1, b2) = warp::triangle(u);
-            (
-                a + b1 * (b - a) + b2 * (c - a),
-                (b - a).cross(c - a).normalize(),
-            )
-        }
-        (
-            None,
-            AreaPart::Parallelogram {
-                corner,
-                edge_1,
-                edge_2,
-            },
-        ) => {
-            let [a, e1, e2] = [corner, edge_1, edge_2].map(|p| p.as_dvec3());
-            (a + u.x * e1 + u.y * e2, e1.cross(e2).normalize())
-        }
+    let part = Flat::new(area.part(index));
+    let point = match area.density() {
+        AreaDensity::Correct => part.sample(from, normal, u)?,
+        AreaDensity::Course => part.at(u),
     };
-    let part_area = f64::from(area.part_area(index));
-    let pdf = part_pdf(
-        (area, part_area),
-        quad.as_ref(),
-        (from, normal),
-        (point, front),
-    );
+    let front = part.front();
+    let pdf = pdf(area, index, (from, normal), (point, front));
     (pdf > 0.0).then(|| LightSample {
         wi: (point - from).normalize(),
         radiance: area.radiance().as_dvec3(),
@@ -58,17 +35,6 @@ pub(super) fn sample(
 pub(super) fn pdf(
     area: &AreaLight,
     index: usize,
-    place: (DVec3, DVec3),
-    end: (DVec3, DVec3),
-) -> f64 {
-    let quad = Quad::new(area.part(index), area.density());
-    let part_area = f64::from(area.part_area(index));
-    part_pdf((area, part_area), quad.as_ref(), place, end)
-}
-
-fn part_pdf(
-    (area, part_area): (&AreaLight, f64),
-    quad: Option<&Quad>,
     (from, facing): (DVec3, DVec3),
     (point, front): (DVec3, DVec3),
 ) -> f64 {
@@ -82,15 +48,58 @@ fn part_pdf(
     if cos <= 0.0 {
         return 0.0;
     }
-    if let Some(quad) = quad {
-        return quad.pdf(from, facing, point);
+    match area.density() {
+        AreaDensity::Correct => Flat::new(area.part(index)).pdf(from, facing, point),
+        AreaDensity::Course => to_light.length() / (f64::from(area.part_area(index)) * cos),
     }
-    // 1 / A per area is r² / (A cos θ) per steradian.
-    let falloff = match area.density() {
-        AreaDensity::Correct => to_light.length_squared(),
-        AreaDensity::Course => to_light.length(),
-    };
-    falloff / (part_area * cos)
+}
+
+/// A part of a light.
+enum Flat {
+    Triangle(Triangle),
+    Quad(Quad),
+}
+
+impl Flat {
+    fn new(part: AreaPart) -> Self {
+        match part {
+            AreaPart::Triangle(corners) => Self::Triangle(Triangle::new(corners)),
+            AreaPart::Parallelogram {
+                corner,
+                edge_1,
+                edge_2,
+            } => Self::Quad(Quad::new([corner, edge_1, edge_2])),
+        }
+    }
+
+    fn front(&self) -> DVec3 {
+        match self {
+            Self::Triangle(triangle) => triangle.normal,
+            Self::Quad(quad) => quad.normal,
+        }
+    }
+
+    /// Even by area.
+    fn at(&self, u: DVec2) -> DVec3 {
+        match self {
+            Self::Triangle(triangle) => triangle.at(u),
+            Self::Quad(quad) => quad.at(u),
+        }
+    }
+
+    fn sample(&self, from: DVec3, facing: DVec3, u: DVec2) -> Option<DVec3> {
+        match self {
+            Self::Triangle(triangle) => triangle.sample(from, facing, u),
+            Self::Quad(quad) => quad.sample(from, facing, u),
+        }
+    }
+
+    fn pdf(&self, from: DVec3, facing: DVec3, point: DVec3) -> f64 {
+        match self {
+            Self::Triangle(triangle) => triangle.pdf(from, facing, point),
+            Self::Quad(quad) => quad.pdf(from, facing, point),
+        }
+    }
 }
 
 /// A parallelogram.
@@ -102,23 +111,14 @@ struct Quad {
 }
 
 impl Quad {
-    /// `None` for what is sampled evenly by area.
-    fn new(part: AreaPart, density: AreaDensity) -> Option<Self> {
-        let AreaPart::Parallelogram {
-            corner,
-            edge_1,
-            edge_2,
-        } = part
-        else {
-            return None;
-        };
-        let [corner, edge_1, edge_2] = [corner, edge_1, edge_2].map(|v| v.as_dvec3());
-        (density == AreaDensity::Correct).then(|| Self {
+    fn new(vectors: [Vec3; 3]) -> Self {
+        let [corner, edge_1, edge_2] = vectors.map(|v| v.as_dvec3());
+        Self {
             corner,
             edge_1,
             edge_2,
             normal: edge_1.cross(edge_2).normalize(),
-        })
+        }
     }
 
     fn at(&self, place: DVec2) -> DVec3 {
@@ -274,32 +274,4 @@ impl<'a> Near<'a> {
 
 fn corner_places() -> [DVec2; 4] {
     [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)].map(DVec2::from)
-}
-
-fn cosine(facing: DVec3, wi: DVec3) -> f64 {
-    facing.dot(wi).max(0.0)
-}
-
-fn usable(weights: [f64; 4]) -> Option<[f64; 4]> {
-    let sum: f64 = weights.iter().sum();
-    (sum > 0.0 && sum.is_finite()).then_some(weights)
-}
-
-/// The density that is bilinear between `weights` at the corners (0, 0), (1, 0), (0, 1), (1, 1).
-fn bilinear_density([w00, w10, w01, w11]: [f64; 4], place: DVec2) -> f64 {
-    let DVec2 { x, y } = place.clamp(DVec2::ZERO, DVec2::ONE);
-    let sum = w00 * (1.0 - x) * (1.0 - y) + w10 * x * (1.0 - y) + w01 * (1.0 - x) * y + w11 * x * y;
-    4.0 * sum / (w00 + w10 + w01 + w11)
-}
-
-/// Distributed with [`bilinear_density`]: the row first, then the place in it.
-fn bilinear_place([w00, w10, w01, w11]: [f64; 4], u: DVec2) -> DVec2 {
-    let y = linear_place(w00 + w10, w01 + w11, u.y);
-    let x = linear_place(w00 + y * (w01 - w00), w10 + y * (w11 - w10), u.x);
-    DVec2::new(x, y)
-}
-
-/// Where the integral of the line from `a` to `b` reaches the share `u` of the whole.
-fn linear_place(a: f64, b: f64, u: f64) -> f64 {
-    u * (a + b) / (a + (a * a + u * (b - a) * (b + a)).sqrt())
 }

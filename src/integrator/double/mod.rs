@@ -10,6 +10,7 @@
 //! They drift apart where light bounces between curved mirrors, which magnify every error.
 
 mod area_light;
+mod bilinear;
 mod bsdf;
 mod delta;
 mod direct;
@@ -24,6 +25,7 @@ mod path;
 mod sphere_light;
 mod surface;
 mod trace;
+mod triangle_light;
 mod warp;
 
 pub use path::reference_f64;

@@ -4,8 +4,8 @@ mod area;
 mod degenerate;
 mod environment;
 mod merge;
-mod parallelogram;
 mod points;
+mod polygon;
 mod sampler;
 mod sphere;
 

@@ -17,6 +17,20 @@ fn panel(corner: Vec3, edge_u: Vec3, edge_v: Vec3) -> Light {
     Light::Area(light)
 }
 
+/// The triangle of three corners, both sides of which shine.
+fn triangle(corners: [Vec3; 3]) -> (Shapes, Light) {
+    let shapes = Shapes {
+        positions: corners.to_vec(),
+        triangles: vec![[0, 1, 2]],
+        spheres: vec![],
+    };
+    let shape = AreaShape::Triangles {
+        primitives: vec![0],
+    };
+    let light = AreaLight::new(&shapes, shape, Rgb::ONE, true);
+    (shapes, Light::Area(light))
+}
+
 /// Lambert's formula for the irradiance of a polygon of radiance 1 (Lambert 1760, "Photometria"),
 /// clipped at the horizon.
 fn irradiance(corners: &[Vec3], from: Vec3, normal: Vec3) -> f64 {
@@ -72,7 +86,12 @@ fn irradiance_is_that_of_the_polygon_formula() {
         corner + edge_u + edge_v,
         corner + edge_v,
     ];
-    let light = panel(corner, edge_u, edge_v);
+    check_irradiance(&panel(corner, edge_u, edge_v), &outline);
+    let outline = [corner, corner + edge_u, corner + 0.7 * edge_v];
+    check_irradiance(&triangle(outline).1, &outline);
+}
+
+fn check_irradiance(light: &Light, outline: &[Vec3]) {
     for height in [1e-4, 1e-2, 0.3, 0.9, 1.1, 30.0, 1000.0] {
         for aside in [0.0, 0.39, 0.6, 0.75, 3.0] {
             for normal in [
@@ -82,8 +101,8 @@ fn irradiance_is_that_of_the_polygon_formula() {
                 Vec3::new(0.0, -0.6, 0.8),
             ] {
                 let point = Vec3::new(aside, -height, 0.05 * aside);
-                let exact = irradiance(&outline, point, normal);
-                let (mean, most) = sampled(&light, &LightSampleContext { point, normal });
+                let exact = irradiance(outline, point, normal);
+                let (mean, most) = sampled(light, &LightSampleContext { point, normal });
                 let name = format!("{point} {normal}: {mean} for {exact}, at most {most}");
                 assert!((mean - exact).abs() < 4e-3 * exact + 1e-6, "{name}");
                 assert!(most < 8.0 * PI, "{name}");
@@ -111,6 +130,10 @@ fn densities_are_usable_wherever_the_light_is_seen_from() {
         panel(Vec3::ZERO, Vec3::X * 1e-6, Vec3::Z * 1e-6),
         panel(Vec3::ZERO, Vec3::X, Vec3::Z * 1e-7),
         panel(Vec3::ZERO, Vec3::X * 1e-7, Vec3::new(0.3, 0.2, 1.0)),
+        triangle([Vec3::ZERO, Vec3::X, Vec3::Z]).1,
+        triangle([Vec3::ZERO, Vec3::X * 1e-6, Vec3::Z * 1e-6]).1,
+        triangle([Vec3::ZERO, Vec3::X, Vec3::Z * 1e-7]).1,
+        triangle([Vec3::ZERO, Vec3::X * 1e-7, Vec3::new(0.3, 0.2, 1.0)]).1,
     ];
     let steps = [0.0, 1e-30, 1e-9, 1e-5, 0.1, 0.5, 1.0, 1.000_001, 3.0, 1e6];
     for light in lights {
