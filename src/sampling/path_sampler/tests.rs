@@ -287,12 +287,12 @@ fn the_points_of_one_path_of_a_cluster_are_even() {
                 number: size - 1,
                 size,
             };
-            let points: Vec<_> = (0..4096)
+            let points: Vec<_> = (0..16_384)
                 .map(|sample| {
                     PathSampler::in_cluster(6, ([4, 8], sample), 1, member).get_2d(bounce, slot)
                 })
                 .collect();
-            for levels in GAP + 1..=12 {
+            for levels in GAP + 1..=14 {
                 let points = &points[..1 << levels];
                 for columns in 0..=levels - GAP {
                     let cells = [1_usize << columns, 1 << (levels - GAP - columns)];
