@@ -8,6 +8,10 @@ use super::bilinear::{bilinear_density, bilinear_place, cosine, usable};
 use super::warp;
 use crate::light::NEAR;
 
+/// What fills less, in steradians, sends nothing that counts: points all but in the plane of the light.
+/// Angles say nothing about it.
+const LEAST_AREA: f64 = 1e-10;
+
 /// A triangle.
 pub(super) struct Triangle {
     corners: [DVec3; 3],
@@ -78,11 +82,13 @@ impl Triangle {
         );
         let [a, b, c] = [0, 1, 2].map(|i| (first + i) % 3);
         let (apex, base) = (directions[a], [directions[b], directions[c]]);
-        Some(Spherical {
+        let area = spherical_area([apex, base[0], base[1]]);
+        let weights = usable([cosines[a], cosines[b], cosines[a], cosines[c]])?;
+        (area > LEAST_AREA).then_some(Spherical {
             apex,
             base,
-            weights: usable([cosines[a], cosines[b], cosines[a], cosines[c]])?,
-            area: spherical_area([apex, base[0], base[1]]),
+            weights,
+            area,
         })
     }
 }
