@@ -162,6 +162,12 @@ impl AreaLight {
         }
     }
 
+    /// A point evenly spread over the area, of the part that `u_part` picks, and the unit normal there.
+    pub(super) fn even_point(&self, u_part: f32, u: Vec2) -> Option<(Vec3, Vec3)> {
+        let part = &self.parts[self.choose_part(u_part)?];
+        Some((part.even_point(u), part.normal()?))
+    }
+
     /// As [`Self::sample_part`], of a part chosen by area.
     pub(super) fn sample(
         &self,

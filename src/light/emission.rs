@@ -2,10 +2,10 @@ use std::f32::consts::PI;
 
 use glam::{Vec2, Vec3};
 
-use super::{AreaPart, Light};
+use super::Light;
 use crate::color::luminance;
 use crate::geometry::Shapes;
-use crate::sampling::{uniform_sphere, uniform_triangle};
+use crate::sampling::uniform_sphere;
 
 /// A point from which a light shines.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,21 +26,10 @@ impl Light {
     pub fn emission_point(&self, shapes: &Shapes, u_part: f32, u: Vec2) -> Option<EmissionPoint> {
         match self {
             Self::Area(area) => {
-                let (point, normal) = match area.part(area.choose_part(u_part)?) {
-                    AreaPart::Triangle([a, b, c]) => {
-                        let (b1, b2) = uniform_triangle(u);
-                        let (ab, ac) = (b - a, c - a);
-                        (a + b1 * ab + b2 * ac, ab.cross(ac))
-                    }
-                    AreaPart::Parallelogram {
-                        corner,
-                        edge_1,
-                        edge_2,
-                    } => (corner + u.x * edge_1 + u.y * edge_2, edge_1.cross(edge_2)),
-                };
+                let (point, normal) = area.even_point(u_part, u)?;
                 Some(EmissionPoint {
                     point,
-                    normal: normal.try_normalize()?,
+                    normal,
                     luminance_area: luminance(area.radiance()) * area.area(),
                     two_sided: area.is_two_sided(),
                 })

@@ -18,9 +18,10 @@ use crate::sampling::Bilinear;
 pub(super) struct TriangleWarp {
     from: DVec3,
     apex: Seen,
-    /// The ends of the arc.
-    start: Seen,
-    end: Seen,
+    /// Across from the apex.
+    base: Side,
+    /// The end of the base, from the point that is lit.
+    end: DVec3,
     /// Six times that of the tetrahedron over the light: area and distance to the plane, twice.
     volume: f64,
     /// Ω/4 as the direction of (cos, sin), Ω being the solid angle of the light.
@@ -69,8 +70,8 @@ impl TriangleWarp {
         (eighth > 0.0).then_some(Self {
             from: point,
             apex,
-            start,
-            end,
+            base: Side::new(&start, end.segment),
+            end: end.segment,
             volume,
             middle,
             eighth,
@@ -82,8 +83,7 @@ impl TriangleWarp {
     pub(super) fn sample(&self, u: Vec2) -> (Vec3, f32) {
         let place = self.density.sample(u);
         let tangent = self.eighth * f64::from(2.0 * place.y - 1.0);
-        let base = Side::new(&self.start, &self.end);
-        let ray = Side::new(&self.apex, &base.seen_at(self.share_of(&base, tangent)));
+        let ray = Side::new(&self.apex, self.base.at(self.share_of(tangent)));
         let height = f64::from(place.x) * ray.one_minus_cos();
         let turn = DVec2::new(1.0 - height, (height * (2.0 - height)).sqrt());
         let point = self.from + ray.at(ray.share_at(turn));
@@ -94,11 +94,12 @@ impl TriangleWarp {
     pub(super) fn pdf(&self, point: Vec3) -> f32 {
         let segment = point.as_dvec3() - self.from;
         let share = self.share_beside(segment);
-        let end = Side::new(&self.start, &self.end).seen_at(share);
-        let cut = half_solid_angle([&self.apex, &self.start, &end], share * self.volume);
+        let end = self.base.at(share);
+        let corners = [&self.apex, &self.base.start, &Seen::new(end)];
+        let cut = half_solid_angle(corners, share * self.volume);
         let back = DVec2::new(self.middle.x, -self.middle.y);
         let tangent = half_tangent(cut.rotate(back)).clamp(-self.eighth, self.eighth);
-        let [part, whole] = [Seen::new(segment), end].map(|p| Side::new(&self.apex, &p));
+        let [part, whole] = [segment, end].map(|p| Side::new(&self.apex, p));
         let along = (part.one_minus_cos() / whole.one_minus_cos()).clamp(0.0, 1.0);
         let place = DVec2::new(along, 0.5 + 0.5 * tangent / self.eighth);
         // Where a corner lies at the point itself this is no number.
@@ -113,11 +114,12 @@ impl TriangleWarp {
     }
 
     /// The share of the base that cuts off the solid angle twice Ω/4 + 2 atan `tangent`.
-    fn share_of(&self, base: &Side, tangent: f64) -> f64 {
+    fn share_of(&self, tangent: f64) -> f64 {
         let square = tangent * tangent;
         let turn = DVec2::new(1.0 - square, 2.0 * tangent);
         let cut = self.middle.rotate(turn);
-        let start = &self.start;
+        let base = &self.base;
+        let start = &base.start;
         let to_apex = self.apex.segment - start.segment;
         // p cos γ, p sin γ and 1, all three times the last factor.
         let cos = base.edge.dot(to_apex) - base.outwards * start.direction.dot(to_apex);
@@ -131,7 +133,7 @@ impl TriangleWarp {
     /// The share of the base at which the line from the apex through a point of the light meets it.
     fn share_beside(&self, segment: DVec3) -> f64 {
         let [start, end, p] =
-            [self.start.segment, self.end.segment, segment].map(|v| v - self.apex.segment);
+            [self.base.start.segment, self.end, segment].map(|v| v - self.apex.segment);
         let normal = start.cross(end);
         let (at_start, at_end) = (p.cross(end).dot(normal), start.cross(p).dot(normal));
         let sum = at_start + at_end;
@@ -155,8 +157,8 @@ impl Seen {
 }
 
 impl Side {
-    fn new(start: &Seen, end: &Seen) -> Self {
-        let edge = end.segment - start.segment;
+    fn new(start: &Seen, end: DVec3) -> Self {
+        let edge = end - start.segment;
         Self {
             start: *start,
             edge,
@@ -167,10 +169,6 @@ impl Side {
 
     fn at(&self, share: f64) -> DVec3 {
         self.start.segment + share * self.edge
-    }
-
-    fn seen_at(&self, share: f64) -> Seen {
-        Seen::new(self.at(share))
     }
 
     /// The share after which it is seen at an angle to its start, given by the direction of (cos, sin).

@@ -2,10 +2,12 @@
 
 use glam::{DVec2, DVec3};
 
+/// What a corner weighs by the surface that it lights: its cosine, 0 below the horizon.
 pub(super) fn cosine(facing: DVec3, wi: DVec3) -> f64 {
     facing.dot(wi).max(0.0)
 }
 
+/// The weights of the corners, if they make a density.
 pub(super) fn usable(weights: [f64; 4]) -> Option<[f64; 4]> {
     let sum: f64 = weights.iter().sum();
     (sum > 0.0 && sum.is_finite()).then_some(weights)
