@@ -171,7 +171,6 @@ mod tests {
     }
 
     /// Vectors over GF(2), each with a leading bit of its own.
-    #[derive(Clone, Copy)]
     struct Basis([u32; 32]);
 
     impl Basis {

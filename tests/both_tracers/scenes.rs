@@ -77,14 +77,19 @@ pub(crate) enum Side {
 
 pub(crate) const SIDES: [Side; 2] = [Side::Front, Side::Both];
 
-/// A slanted light upright in the middle of the room; where both sides shine it reflects, too. One wall lies on its plane,
-/// one stands on its edge, one runs right behind it, a ball is cut by it.
+/// A surface that shines; one that shines on both sides reflects, too.
+fn lamp(builder: &mut SceneBuilder, side: Side) -> usize {
+    match side {
+        Side::Front => builder.emitter("lamp", Rgb::new(6.0, 5.0, 4.0)),
+        Side::Both => glowing(builder, 0.4, 5.0),
+    }
+}
+
+/// A slanted light upright in the middle of the room. One wall lies on its plane, one stands on its
+/// edge, one runs right behind it, a ball is cut by it.
 pub(crate) fn light_between_walls(side: Side) -> View {
     let mut builder = dark_box("light between walls");
-    let lamp = match side {
-        Side::Front => builder.emitter("lamp", Rgb::new(6.0, 5.0, 4.0)),
-        Side::Both => glowing(&mut builder, 0.4, 5.0),
-    };
+    let lamp = lamp(&mut builder, side);
     let grey = builder.diffuse("grey", Rgb::splat(0.8));
     let (corner, u, v) = (
         DVec3::new(0.0, 0.5, -0.25),
@@ -114,10 +119,7 @@ pub(crate) fn glowing_ceiling() -> View {
 /// One triangle is all that shines.
 pub(crate) fn triangle_light(side: Side) -> View {
     let mut builder = dark_box("triangle light");
-    let lamp = match side {
-        Side::Front => builder.emitter("lamp", Rgb::new(6.0, 5.0, 4.0)),
-        Side::Both => glowing(&mut builder, 0.4, 5.0),
-    };
+    let lamp = lamp(&mut builder, side);
     let corners = [
         DVec3::new(-0.5, 1.4, -0.6),
         DVec3::new(0.6, 1.2, -0.4),

@@ -145,32 +145,32 @@ fn rectangle(density: AreaDensity, two_sided: bool) -> Light {
     Light::Area(area.with_density(density))
 }
 
-/// A tetrahedron, a flat needle and a degenerate triangle.
-fn mesh() -> (Shapes, Light) {
+/// Triangles all of which shine, on one side.
+fn of_triangles(positions: Vec<Vec3>, triangles: &[[u32; 3]]) -> (Shapes, Light) {
     let shapes = Shapes {
-        positions: vec![
-            Vec3::ZERO,
-            Vec3::X,
-            Vec3::Y,
-            Vec3::Z,
-            Vec3::new(2.0, 0.3, 0.1),
-            Vec3::new(2.01, 0.3, 1.9),
-        ],
-        triangles: vec![
-            [0, 2, 1],
-            [0, 1, 3],
-            [0, 3, 2],
-            [1, 2, 3],
-            [1, 4, 5],
-            [1, 1, 5],
-        ],
+        positions,
+        triangles: triangles.to_vec(),
         spheres: vec![],
     };
-    let shape = AreaShape::Triangles {
-        primitives: vec![0, 1, 2, 3, 4, 5],
-    };
+    let primitives = (0..triangles.len() as u32).collect();
+    let shape = AreaShape::Triangles { primitives };
     let light = AreaLight::new(&shapes, shape, Rgb::ONE, false);
     (shapes, Light::Area(light))
+}
+
+/// A tetrahedron, a flat needle and a degenerate triangle.
+fn mesh() -> (Shapes, Light) {
+    let positions = vec![
+        Vec3::ZERO,
+        Vec3::X,
+        Vec3::Y,
+        Vec3::Z,
+        Vec3::new(2.0, 0.3, 0.1),
+        Vec3::new(2.01, 0.3, 1.9),
+    ];
+    let tetrahedron = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+    let others = [[1, 4, 5], [1, 1, 5]];
+    of_triangles(positions, &[&tetrahedron[..], &others].concat())
 }
 
 fn sphere(two_sided: bool) -> (Shapes, Light) {
@@ -191,39 +191,23 @@ fn sphere(two_sided: bool) -> (Shapes, Light) {
 
 /// Two triangles that are one parallelogram.
 fn pair() -> (Shapes, Light) {
-    let shapes = Shapes {
-        positions: vec![
-            Vec3::new(-0.4, 1.0, -0.3),
-            Vec3::new(0.4, 1.0, -0.3),
-            Vec3::new(0.5, 1.0, 0.3),
-            Vec3::new(-0.3, 1.0, 0.3),
-        ],
-        triangles: vec![[0, 1, 2], [0, 2, 3]],
-        spheres: vec![],
-    };
-    let shape = AreaShape::Triangles {
-        primitives: vec![0, 1],
-    };
-    let light = AreaLight::new(&shapes, shape, Rgb::ONE, false);
-    (shapes, Light::Area(light))
+    let positions = vec![
+        Vec3::new(-0.4, 1.0, -0.3),
+        Vec3::new(0.4, 1.0, -0.3),
+        Vec3::new(0.5, 1.0, 0.3),
+        Vec3::new(-0.3, 1.0, 0.3),
+    ];
+    of_triangles(positions, &[[0, 1, 2], [0, 2, 3]])
 }
 
 /// One triangle, more than a half of [`pair`].
 fn triangle() -> (Shapes, Light) {
-    let shapes = Shapes {
-        positions: vec![
-            Vec3::new(-0.4, 1.0, -0.3),
-            Vec3::new(0.5, 1.0, -0.2),
-            Vec3::new(0.1, 1.0, 0.3),
-        ],
-        triangles: vec![[0, 1, 2]],
-        spheres: vec![],
-    };
-    let shape = AreaShape::Triangles {
-        primitives: vec![0],
-    };
-    let light = AreaLight::new(&shapes, shape, Rgb::ONE, false);
-    (shapes, Light::Area(light))
+    let positions = vec![
+        Vec3::new(-0.4, 1.0, -0.3),
+        Vec3::new(0.5, 1.0, -0.2),
+        Vec3::new(0.1, 1.0, 0.3),
+    ];
+    of_triangles(positions, &[[0, 1, 2]])
 }
 
 /// Near and far, under the light and beside it, whole and partly below the horizon.

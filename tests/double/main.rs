@@ -129,11 +129,7 @@ fn lenses_and_glowing_rooms() {
 #[test]
 fn triangles_that_shine() {
     for is_lamp in [false, true] {
-        let view = scenes::triangles_that_shine(is_lamp);
-        for mode in Mode::ALL {
-            let comparison = compare(&view, PathSettings { mode, ..SETTINGS }, 16);
-            comparison.check_within(mode.name(), FLIP_RATE);
-        }
+        agrees_in_all_modes(&scenes::triangles_that_shine(is_lamp));
     }
 }
 

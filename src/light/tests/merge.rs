@@ -1,18 +1,13 @@
 use glam::Vec3;
 
-use super::seen_from;
+use super::{of_triangles, seen_from};
 use crate::color::Rgb;
 use crate::geometry::Shapes;
-use crate::light::{AreaLight, AreaPart, AreaShape, Light, LightHit};
+use crate::light::{AreaLight, AreaPart, Light, LightHit};
 
 fn light_of(positions: &[[f32; 3]], triangles: &[[u32; 3]]) -> (Shapes, AreaLight) {
-    let shapes = Shapes {
-        positions: positions.iter().map(|&p| p.into()).collect(),
-        triangles: triangles.to_vec(),
-        spheres: vec![],
-    };
-    let primitives = (0..triangles.len() as u32).collect();
-    let shape = AreaShape::Triangles { primitives };
+    let positions = positions.iter().map(|&p| p.into()).collect();
+    let (shapes, shape) = of_triangles(positions, triangles);
     let light = AreaLight::new(&shapes, shape, Rgb::ONE, false);
     (shapes, light)
 }

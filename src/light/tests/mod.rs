@@ -44,15 +44,19 @@ fn square() -> AreaShape {
 /// The same square as two triangles, and a zero-area triangle that must not matter.
 fn square_of_triangles() -> (Shapes, AreaShape) {
     let at = |x: f32, z: f32| Vec3::new(x - 0.5, 1.0, z - 0.5);
+    let corners = vec![at(0.0, 0.0), at(1.0, 0.0), at(1.0, 1.0), at(0.0, 1.0)];
+    of_triangles(corners, &[[0, 1, 2], [1, 1, 2], [0, 2, 3]])
+}
+
+/// Triangles all of which shine.
+fn of_triangles(positions: Vec<Vec3>, triangles: &[[u32; 3]]) -> (Shapes, AreaShape) {
     let shapes = Shapes {
-        positions: vec![at(0.0, 0.0), at(1.0, 0.0), at(1.0, 1.0), at(0.0, 1.0)],
-        triangles: vec![[0, 1, 2], [1, 1, 2], [0, 2, 3]],
+        positions,
+        triangles: triangles.to_vec(),
         spheres: vec![],
     };
-    let shape = AreaShape::Triangles {
-        primitives: vec![0, 1, 2],
-    };
-    (shapes, shape)
+    let primitives = (0..triangles.len() as u32).collect();
+    (shapes, AreaShape::Triangles { primitives })
 }
 
 fn ball(center: Vec3, radius: f32, two_sided: bool) -> (Shapes, Light) {

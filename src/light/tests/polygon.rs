@@ -2,7 +2,7 @@ use std::f64::consts::PI;
 
 use glam::{DVec3, Vec2, Vec3};
 
-use super::{corners, random, square};
+use super::{corners, of_triangles, random, square};
 use crate::color::Rgb;
 use crate::geometry::Shapes;
 use crate::light::{AreaLight, AreaShape, Light, LightSampleContext};
@@ -18,17 +18,9 @@ fn panel(corner: Vec3, edge_u: Vec3, edge_v: Vec3) -> Light {
 }
 
 /// The triangle of three corners, both sides of which shine.
-fn triangle(corners: [Vec3; 3]) -> (Shapes, Light) {
-    let shapes = Shapes {
-        positions: corners.to_vec(),
-        triangles: vec![[0, 1, 2]],
-        spheres: vec![],
-    };
-    let shape = AreaShape::Triangles {
-        primitives: vec![0],
-    };
-    let light = AreaLight::new(&shapes, shape, Rgb::ONE, true);
-    (shapes, Light::Area(light))
+fn triangle(corners: [Vec3; 3]) -> Light {
+    let (shapes, shape) = of_triangles(corners.to_vec(), &[[0, 1, 2]]);
+    Light::Area(AreaLight::new(&shapes, shape, Rgb::ONE, true))
 }
 
 /// Lambert's formula for the irradiance of a polygon of radiance 1 (Lambert 1760, "Photometria"),
@@ -88,7 +80,7 @@ fn irradiance_is_that_of_the_polygon_formula() {
     ];
     check_irradiance(&panel(corner, edge_u, edge_v), &outline);
     let outline = [corner, corner + edge_u, corner + 0.7 * edge_v];
-    check_irradiance(&triangle(outline).1, &outline);
+    check_irradiance(&triangle(outline), &outline);
 }
 
 fn check_irradiance(light: &Light, outline: &[Vec3]) {
@@ -130,10 +122,10 @@ fn densities_are_usable_wherever_the_light_is_seen_from() {
         panel(Vec3::ZERO, Vec3::X * 1e-6, Vec3::Z * 1e-6),
         panel(Vec3::ZERO, Vec3::X, Vec3::Z * 1e-7),
         panel(Vec3::ZERO, Vec3::X * 1e-7, Vec3::new(0.3, 0.2, 1.0)),
-        triangle([Vec3::ZERO, Vec3::X, Vec3::Z]).1,
-        triangle([Vec3::ZERO, Vec3::X * 1e-6, Vec3::Z * 1e-6]).1,
-        triangle([Vec3::ZERO, Vec3::X, Vec3::Z * 1e-7]).1,
-        triangle([Vec3::ZERO, Vec3::X * 1e-7, Vec3::new(0.3, 0.2, 1.0)]).1,
+        triangle([Vec3::ZERO, Vec3::X, Vec3::Z]),
+        triangle([Vec3::ZERO, Vec3::X * 1e-6, Vec3::Z * 1e-6]),
+        triangle([Vec3::ZERO, Vec3::X, Vec3::Z * 1e-7]),
+        triangle([Vec3::ZERO, Vec3::X * 1e-7, Vec3::new(0.3, 0.2, 1.0)]),
     ];
     let steps = [0.0, 1e-30, 1e-9, 1e-5, 0.1, 0.5, 1.0, 1.000_001, 3.0, 1e6];
     for light in lights {
