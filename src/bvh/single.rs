@@ -43,14 +43,18 @@ impl<L: Leaves, F: FnMut(usize, Option<&L::Query>), const ANY: bool, const STACK
                     top = stack.push::<N, ANY>(top, octant, met, &node.children);
                 } else {
                     let (block, blocks) = (at & !LEAF, &mut work.blocks);
+                    let before = limit;
                     limit = self
                         .leaves
                         .visit::<ANY>(block, (ray, &slab), &mut query, blocks);
                     if limit == f32::NEG_INFINITY {
                         break;
                     }
+                    if !ANY && limit < before {
+                        top = stack.cull::<N>(top, limit);
+                    }
                 }
-                (at, top) = stack.pop::<ANY>(top, limit);
+                (at, top) = stack.pop(top);
             }
             (self.answer)(i, Some(&query));
         }

@@ -87,16 +87,34 @@ impl<const SIZE: usize> Stack<SIZE> {
         top + usize::from(near <= limit)
     }
 
-    /// Takes the nearest entry that begins at or before `limit` off the stack with this `top`;
-    /// returns it and the new top. At the bottom there is [`DONE`].
+    /// Drops the entries that begin beyond `limit` from the stack with this `top`; returns the new top.
+    ///
+    /// To be done where the limit moves: there it is one loop after a branch that is hard to predict
+    /// anyway, and [`Self::pop`] needs no branch.
     #[inline(always)]
-    pub(super) fn pop<const ANY: bool>(&self, top: usize, limit: f32) -> (u32, usize) {
-        let mut top = top - 1;
-        // Equality stays in: a hit at the same parameter may have the smaller id.
-        while !ANY && self.near[top & Self::MASK] > limit {
-            top -= 1;
+    pub(super) fn cull<N: NodeTest>(&mut self, top: usize, limit: f32) -> usize {
+        let (mut from, mut to) = (0, 0);
+        while from < top {
+            let at = from & Self::MASK;
+            // Equality stays in: a hit at the same parameter may have the smaller id.
+            let (near, kept) = N::at_most(eight(&mut self.near, at), limit);
+            let kept = kept & (u32::MAX >> 24 >> (WIDTH - (top - from).min(WIDTH)));
+            let references = *eight(&mut self.references, at);
+            let order = FAR_TO_NEAR[7][kept as usize % (1 << WIDTH)];
+            let place = to & Self::MASK;
+            N::arrange_near(order, near, eight(&mut self.near, place));
+            N::arrange(order, &references, eight(&mut self.references, place));
+            from += WIDTH;
+            to += kept.count_ones() as usize;
         }
-        (self.references[top & Self::MASK], top)
+        to
+    }
+
+    /// Takes the nearest entry off the stack with this `top`; returns it and the new top. At the bottom
+    /// there is [`DONE`].
+    #[inline(always)]
+    pub(super) fn pop(&self, top: usize) -> (u32, usize) {
+        (self.references[(top - 1) & Self::MASK], top - 1)
     }
 }
 

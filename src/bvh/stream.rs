@@ -152,7 +152,7 @@ impl<L: Leaves, F: FnMut(usize, Option<&L::Query>), const ANY: bool, const STACK
             let octant = lane.slab.octant as usize;
             let children = &self.bvh.nodes()[0].children;
             let top = stack.push_all::<N>(BOTTOM, octant, meets, children);
-            let (at, top) = stack.pop::<ANY>(top, lane.limit);
+            let (at, top) = stack.pop(top);
             (lane.at, lane.top) = (at, top as u32);
         }
     }
@@ -230,7 +230,7 @@ impl<L: Leaves, F: FnMut(usize, Option<&L::Query>), const ANY: bool, const STACK
                 let met = N::enter(node, &lane.slab, lane.limit);
                 let (top, octant) = (lane.top as usize, lane.slab.octant as usize);
                 let top = stack.push::<N, ANY>(top, octant, met, &node.children);
-                let (at, top) = stack.pop::<ANY>(top, lane.limit);
+                let (at, top) = stack.pop(top);
                 (lane.at, lane.top) = (at, top as u32);
                 arrivals.put(number, at);
             }
@@ -243,11 +243,19 @@ impl<L: Leaves, F: FnMut(usize, Option<&L::Query>), const ANY: bool, const STACK
                 let lane = &mut lanes[number % LANES];
                 let (block, blocks) = (lane.at & !LEAF, &mut work.blocks);
                 let ray = (&self.rays[lane.ray as usize], &lane.slab);
-                lane.limit = leaves.visit::<ANY>(block, ray, &mut lane.query, blocks);
-                let (at, top) = if ANY && lane.limit == f32::NEG_INFINITY {
+                let limit = leaves.visit::<ANY>(block, ray, &mut lane.query, blocks);
+                let stack = &mut stacks[number % LANES];
+                let mut top = lane.top as usize;
+                if !ANY && limit < lane.limit {
+                    if top > BOTTOM {
+                        top = stack.cull::<N>(top, limit);
+                    }
+                    lane.limit = limit;
+                }
+                let (at, top) = if ANY && limit == f32::NEG_INFINITY {
                     (DONE, BOTTOM)
                 } else {
-                    stacks[number % LANES].pop::<ANY>(lane.top as usize, lane.limit)
+                    stack.pop(top)
                 };
                 (lane.at, lane.top) = (at, top as u32);
                 arrivals.put(number, at);

@@ -132,7 +132,12 @@ impl<Q: Copy, const STACK: usize> Pool<Q, STACK> {
                 let lane = &mut self.lanes[number];
                 let ray = (&rays[lane.ray as usize], &lane.slab);
                 let blocks = &mut work.blocks;
-                lane.limit = leaves.visit::<false>(lane.at & !LEAF, ray, &mut lane.query, blocks);
+                let limit = leaves.visit::<false>(lane.at & !LEAF, ray, &mut lane.query, blocks);
+                if limit < lane.limit {
+                    let stack = &mut self.stacks[number];
+                    lane.top = stack.cull::<N>(lane.top as usize, limit) as u32;
+                    lane.limit = limit;
+                }
                 self.next(number, bvh, leaves);
             }
         }
@@ -142,7 +147,7 @@ impl<Q: Copy, const STACK: usize> Pool<Q, STACK> {
     #[inline(always)]
     fn next<L: Leaves<Query = Q>>(&mut self, number: usize, bvh: &Bvh, leaves: &L) {
         let lane = &mut self.lanes[number];
-        let (at, top) = self.stacks[number].pop::<false>(lane.top as usize, lane.limit);
+        let (at, top) = self.stacks[number].pop(lane.top as usize);
         (lane.at, lane.top) = (at, top as u32);
         let (is_leaf, is_done) = (at & LEAF != 0, at == DONE);
         self.nodes |= u64::from(!is_leaf) << number;

@@ -84,6 +84,16 @@ impl NodeTest for Avx2 {
     }
 
     #[inline(always)]
+    fn at_most(values: &[f32; WIDTH], limit: f32) -> (__m256, u32) {
+        let values = load(values);
+        // SAFETY: AVX2 is there (see `Avx2`).
+        let kept = unsafe {
+            _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(values, _mm256_set1_ps(limit)))
+        };
+        (values, kept.cast_unsigned())
+    }
+
+    #[inline(always)]
     fn arrange_near(order: u64, values: __m256, to: &mut [f32; WIDTH]) {
         // SAFETY: AVX2 is there (see `Avx2`); there is room for eight numbers.
         unsafe {

@@ -24,6 +24,9 @@ pub(super) trait NodeTest {
     /// `limit`; the same numbers as [`SlabRay::enter`].
     fn enter(node: &WideNode, ray: &SlabRay, limit: f32) -> (Self::PerSlot, u32);
 
+    /// `values` as they are, and a bit for each that is at most `limit`.
+    fn at_most(values: &[f32; WIDTH], limit: f32) -> (Self::PerSlot, u32);
+
     /// Writes `values` in the `order` of [`super::octant::FAR_TO_NEAR`]; past the end of the set
     /// anything may be written.
     fn arrange_near(order: u64, values: Self::PerSlot, to: &mut [f32; WIDTH]);

@@ -38,6 +38,13 @@ impl NodeTest for Portable {
     }
 
     #[inline(always)]
+    fn at_most(values: &[f32; WIDTH], limit: f32) -> (Self::PerSlot, u32) {
+        let half = |values: &[f32]| Vec4::from_slice(values).cmple(Vec4::splat(limit));
+        let (low, high) = (half(&values[..4]), half(&values[4..]));
+        (*values, low.bitmask() | high.bitmask() << 4)
+    }
+
+    #[inline(always)]
     fn arrange_near(order: u64, values: [f32; WIDTH], to: &mut [f32; WIDTH]) {
         for (to, slot) in to.iter_mut().zip(order.to_le_bytes()) {
             *to = values[slot as usize % WIDTH];
