@@ -1,5 +1,6 @@
 use glam::{Vec3, Vec4};
 
+use super::node::WIDTH;
 use crate::math::{Aabb, Ray, gamma};
 
 /// Nothing at or beyond this ray parameter is ever reported.
@@ -68,6 +69,9 @@ pub fn padded_four(boxes: &mut [[Vec4; 2]; 3]) {
     }
 }
 
+/// Bytes of the planes of one side of all children of a node.
+pub(super) const PLANES: u32 = size_of::<[f32; WIDTH]>() as u32;
+
 /// A ray prepared for box tests.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(16))]
@@ -78,7 +82,8 @@ pub struct SlabRay {
     pub(super) inverse: [f32; 4],
     /// A bit for each axis on which the direction points down.
     pub(super) octant: u32,
-    /// For each axis the row of [`WideNode::planes`](super::node::WideNode) that the ray meets first.
+    /// For each axis where in [`WideNode::planes`](super::node::WideNode) the planes begin that the ray
+    /// meets first, in bytes. The others differ in the bit [`PLANES`].
     pub(super) near: [u32; 3],
 }
 
@@ -115,14 +120,15 @@ impl SlabRay {
             origin: ray.origin.extend(ray.t_min).to_array(),
             inverse: inverse.with_w(t_max).to_array(),
             octant,
-            near: Self::near_rows(octant),
+            near: Self::near_planes(octant),
         }
     }
 
-    /// The rows of planes that a ray of this octant meets first.
+    /// Where the planes begin that a ray of this octant meets first.
     #[inline(always)]
-    pub(super) fn near_rows(octant: u32) -> [u32; 3] {
-        [octant & 1, 2 + (octant >> 1 & 1), 4 + (octant >> 2 & 1)]
+    pub(super) fn near_planes(octant: u32) -> [u32; 3] {
+        let sides = [octant & 1, 2 + (octant >> 1 & 1), 4 + (octant >> 2 & 1)];
+        sides.map(|side| side * PLANES)
     }
 
     /// For an axis the side (0 minimum, 1 maximum) of a box that the ray meets first.

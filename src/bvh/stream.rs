@@ -36,26 +36,43 @@ struct Lane<Q> {
     query: Q,
 }
 
-/// Lanes that come to their next step in one pass, a bit each.
+/// A bit for each lane: bit 2 n for lane n, so that two sets fit into one number.
+type LaneSet = u64;
+
+/// All lanes.
+const ALL: LaneSet = LaneSet::MAX / 3;
+
+/// Where lanes come to in one pass.
 struct Arrivals {
-    /// Lanes that come to a leaf or to the end.
-    not_at_node: u32,
-    /// Lanes that come to the end.
-    done: u32,
-    nodes: *const u8,
-    blocks: *const u8,
-    block_size: usize,
+    /// The upper two bits of what each lane comes to.
+    kinds: u64,
+    /// Where nodes and blocks lie, moved such that the whole reference of a leaf is its index.
+    memory: [*const u8; 2],
+    sizes: [usize; 2],
+}
+
+/// Lanes by what they have come to.
+struct Sorted {
+    at_node: LaneSet,
+    at_leaf: LaneSet,
+    done: LaneSet,
 }
 
 impl Arrivals {
     fn new(bvh: &Bvh, leaves: &impl Leaves) -> Self {
         let (nodes, blocks) = (bvh.nodes(), leaves.blocks());
+        let sizes = [
+            size_of::<WideNode>(),
+            size_of_val(blocks).checked_div(blocks.len()).unwrap_or(0),
+        ];
+        let blocks: *const u8 = blocks.as_ptr().cast();
         Self {
-            not_at_node: 0,
-            done: 0,
-            nodes: nodes.as_ptr().cast(),
-            blocks: blocks.as_ptr().cast(),
-            block_size: size_of_val(blocks).checked_div(blocks.len()).unwrap_or(0),
+            kinds: 0,
+            memory: [
+                nodes.as_ptr().cast(),
+                blocks.wrapping_sub(LEAF as usize * sizes[1]),
+            ],
+            sizes,
         }
     }
 
@@ -63,15 +80,24 @@ impl Arrivals {
     /// next is hard to predict.
     #[inline(always)]
     fn put(&mut self, lane: usize, at: u32) {
-        let is_leaf = at >> LEAF.trailing_zeros();
-        self.not_at_node |= is_leaf << lane;
-        self.done |= u32::from(at == DONE) << lane;
-        let (memory, size) = if is_leaf == 1 {
-            (self.blocks, self.block_size)
-        } else {
-            (self.nodes, size_of::<WideNode>())
-        };
-        prefetch(memory.wrapping_add((at & !LEAF) as usize * size), 4);
+        self.kinds |= u64::from(at >> 30) << (2 * lane);
+        let is_leaf = (at >> LEAF.trailing_zeros()) as usize;
+        prefetch(
+            self.memory[is_leaf].wrapping_add(at as usize * self.sizes[is_leaf]),
+            4,
+        );
+    }
+
+    /// The lanes in `moved` by what they have come to since this was last asked.
+    #[inline(always)]
+    fn take(&mut self, moved: LaneSet) -> Sorted {
+        let kinds = std::mem::take(&mut self.kinds);
+        let (not_at_node, done) = ((kinds >> 1) & ALL, kinds & ALL);
+        Sorted {
+            at_node: moved & !not_at_node,
+            at_leaf: not_at_node & !done,
+            done,
+        }
     }
 }
 
@@ -93,6 +119,14 @@ fn take(set: &mut u32) -> usize {
     let lowest = set.trailing_zeros();
     *set &= *set - 1;
     lowest as usize
+}
+
+/// Takes a lane out of a set.
+#[inline(always)]
+fn take_lane(set: &mut LaneSet) -> usize {
+    let lowest = set.trailing_zeros();
+    *set &= *set - 1;
+    (lowest / 2) as usize % LANES
 }
 
 impl<L: Leaves, F: FnMut(usize, Option<&L::Query>), const ANY: bool, const STACK: usize>
@@ -201,9 +235,9 @@ impl<L: Leaves, F: FnMut(usize, Option<&L::Query>), const ANY: bool, const STACK
         };
         let mut lanes = [self.lane(first.0); LANES];
         let mut stacks = [Stack::<STACK>::EMPTY; LANES];
+        let nodes = bvh.nodes();
         let mut arrivals = Arrivals::new(bvh, leaves);
-        // Lanes whose next step is at a node, and at a leaf; a bit each.
-        let (mut at_node, mut at_leaf) = (0_u32, 0);
+        let mut started: LaneSet = 0;
         let mut next = Some(first);
         for (number, (lane, stack)) in lanes.iter_mut().zip(&mut stacks).enumerate() {
             let Some(ray) = next
@@ -214,19 +248,22 @@ impl<L: Leaves, F: FnMut(usize, Option<&L::Query>), const ANY: bool, const STACK
             };
             self.start::<N>(lane, stack, ray);
             arrivals.put(number, lane.at);
-            at_node |= 1 << number;
+            started |= 1 << (2 * number);
         }
-        at_leaf |= arrivals.not_at_node;
-        at_node &= !arrivals.not_at_node;
-        arrivals.not_at_node = 0;
+        // Lanes whose next step is at a node, and at a leaf.
+        let Sorted {
+            mut at_node,
+            mut at_leaf,
+            ..
+        } = arrivals.take(started);
         while at_node | at_leaf != 0 {
             work.nodes += u64::from(at_node.count_ones());
             let mut now = at_node;
             while now != 0 {
-                let number = take(&mut now);
-                let lane = &mut lanes[number % LANES];
-                let stack = &mut stacks[number % LANES];
-                let node = &bvh.nodes()[lane.at as usize];
+                let number = take_lane(&mut now);
+                let lane = &mut lanes[number];
+                let stack = &mut stacks[number];
+                let node = &nodes[lane.at as usize];
                 let met = N::enter(node, &lane.slab, lane.limit);
                 let (top, octant) = (lane.top as usize, lane.slab.octant as usize);
                 let top = stack.push::<N, ANY>(top, octant, met, &node.children);
@@ -234,17 +271,17 @@ impl<L: Leaves, F: FnMut(usize, Option<&L::Query>), const ANY: bool, const STACK
                 (lane.at, lane.top) = (at, top as u32);
                 arrivals.put(number, at);
             }
-            at_node &= !arrivals.not_at_node;
-            at_leaf |= arrivals.not_at_node & !arrivals.done;
-            arrivals.not_at_node = 0;
+            let come = arrivals.take(at_node);
+            let done = come.done;
+            at_leaf |= come.at_leaf;
             let mut now = at_leaf;
             while now != 0 {
-                let number = take(&mut now);
-                let lane = &mut lanes[number % LANES];
+                let number = take_lane(&mut now);
+                let lane = &mut lanes[number];
                 let (block, blocks) = (lane.at & !LEAF, &mut work.blocks);
                 let ray = (&self.rays[lane.ray as usize], &lane.slab);
                 let limit = leaves.visit::<ANY>(block, ray, &mut lane.query, blocks);
-                let stack = &mut stacks[number % LANES];
+                let stack = &mut stacks[number];
                 let mut top = lane.top as usize;
                 if !ANY && limit < lane.limit {
                     if top > BOTTOM {
@@ -260,23 +297,25 @@ impl<L: Leaves, F: FnMut(usize, Option<&L::Query>), const ANY: bool, const STACK
                 (lane.at, lane.top) = (at, top as u32);
                 arrivals.put(number, at);
             }
-            at_node |= at_leaf & !arrivals.not_at_node;
-            at_leaf = arrivals.not_at_node & !arrivals.done;
-            arrivals.not_at_node = 0;
-            let mut now = std::mem::take(&mut arrivals.done);
+            at_node = come.at_node;
+            let come = arrivals.take(at_leaf);
+            at_node |= come.at_node;
+            at_leaf = come.at_leaf;
+            let mut now = done | come.done;
+            let mut started = 0;
             while now != 0 {
-                let number = take(&mut now);
-                let lane = &mut lanes[number % LANES];
+                let number = take_lane(&mut now);
+                let lane = &mut lanes[number];
                 (self.answer)(lane.ray as usize, Some(&lane.query));
                 if let Some(ray) = self.next::<N>(&mut queue, &mut work) {
-                    self.start::<N>(lane, &mut stacks[number % LANES], ray);
+                    self.start::<N>(lane, &mut stacks[number], ray);
                     arrivals.put(number, lane.at);
-                    at_node |= 1 << number;
+                    started |= 1 << (2 * number);
                 }
             }
-            at_leaf |= arrivals.not_at_node;
-            at_node &= !arrivals.not_at_node;
-            arrivals.not_at_node = 0;
+            let come = arrivals.take(started);
+            at_node |= come.at_node;
+            at_leaf |= come.at_leaf;
         }
         work
     }

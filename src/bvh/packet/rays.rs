@@ -121,7 +121,7 @@ impl PacketRays {
                 at(&self.t_max),
             ],
             octant: self.octant,
-            near: SlabRay::near_rows(self.octant),
+            near: SlabRay::near_planes(self.octant),
         }
     }
 

@@ -11,7 +11,7 @@ use std::arch::x86_64::{
 };
 
 use super::super::node::{WIDTH, WideNode};
-use super::super::slab::{FAR_MARGIN, SlabRay};
+use super::super::slab::{FAR_MARGIN, PLANES, SlabRay};
 use super::{Kernel, NodeTest};
 use crate::math::{Avx2Lanes, Isa};
 
@@ -58,10 +58,11 @@ impl NodeTest for Avx2 {
 
     #[inline(always)]
     fn enter(node: &WideNode, ray: &SlabRay, limit: f32) -> (__m256, u32) {
-        let t = |axis: usize, row: u32| {
-            debug_assert!(row < 6);
-            // SAFETY: a prepared ray has rows 0 to 5 only.
-            let planes = load(unsafe { node.planes.as_flattened().get_unchecked(row as usize) });
+        let first: *const u8 = (&raw const node.planes).cast();
+        let t = |axis: usize, planes: u32| {
+            debug_assert!(planes.is_multiple_of(PLANES) && planes < 6 * PLANES);
+            // SAFETY: a prepared ray has the places of the six rows of planes only.
+            let planes = load(unsafe { &*first.add(planes as usize).cast() });
             let (origin, inverse) = (splat(&ray.origin[axis]), splat(&ray.inverse[axis]));
             // SAFETY: AVX2 is there (see `Avx2`).
             unsafe { _mm256_mul_ps(_mm256_sub_ps(planes, origin), inverse) }
@@ -74,8 +75,8 @@ impl NodeTest for Avx2 {
                 _mm256_max_ps(t(2, z), splat(&ray.origin[3])),
             );
             let far = _mm256_min_ps(
-                _mm256_min_ps(t(0, x ^ 1), t(1, y ^ 1)),
-                _mm256_min_ps(t(2, z ^ 1), splat(&limit)),
+                _mm256_min_ps(t(0, x ^ PLANES), t(1, y ^ PLANES)),
+                _mm256_min_ps(t(2, z ^ PLANES), splat(&limit)),
             );
             let far = _mm256_mul_ps(far, _mm256_set1_ps(FAR_MARGIN));
             let meets = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(near, far));
