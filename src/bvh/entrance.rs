@@ -1,6 +1,6 @@
 use super::node::{WIDTH, WideNode};
-use super::slab::{FAR_MARGIN, T_FAR};
-use crate::math::{LANES, Lanes, ROW, Ray};
+use super::slab::{FAR_MARGIN, T_FAR, can_meet, inverse};
+use crate::math::{LANES, Lanes, Ray};
 
 /// Up to eight rays at the root of a tree, all at once: those that meet nothing below it have their
 /// answer, and the others start there.
@@ -22,20 +22,11 @@ impl Entrance {
     #[inline(always)]
     pub(super) fn new<V: Lanes>(root: &WideNode, rays: &[Ray]) -> Self {
         let count = rays.len().min(LANES);
-        let some: [&Ray; ROW] = std::array::from_fn(|lane| &rays[lane.min(count - 1)]);
-        let [ox, oy, oz, dx, dy, dz, t_min, t_max] = V::of_rays(&some);
-        let zero = V::splat(0.0);
-        // Zero, or NaN if anything is infinite or NaN.
-        let nothing = ([oy, oz, dx, dy, dz, t_min].into_iter())
-            .fold(ox * zero, |nothing, number| nothing + number * zero);
-        let is_zero = dx.eq(zero) & dy.eq(zero) & dz.eq(zero);
-        let can_meet = V::without(nothing.eq(zero) & t_min.lt(t_max), is_zero);
-        let inverse = |direction: V| {
-            (V::splat(1.0) / (direction + zero))
-                .min(V::splat(f32::MAX))
-                .max(V::splat(-f32::MAX))
-        };
-        let (origin, inverse) = ([ox, oy, oz], [inverse(dx), inverse(dy), inverse(dz)]);
+        let [ox, oy, oz, dx, dy, dz, t_min, t_max] = V::of_first_rays(rays);
+        let (origin, direction) = ([ox, oy, oz], [dx, dy, dz]);
+        let can_meet = can_meet(origin, direction, [t_min, t_max]);
+        // Not mapped: a function over an array is not always inlined.
+        let inverse = [inverse(dx), inverse(dy), inverse(dz)];
         let t_max = t_max.min(V::splat(T_FAR));
         let (mut meets, mut any) = (0, V::mask_of_bits(0));
         for slot in 0..WIDTH {

@@ -1,7 +1,7 @@
 use glam::{Vec3, Vec4};
 
 use super::node::WIDTH;
-use crate::math::{Aabb, Ray, gamma};
+use crate::math::{Aabb, Lanes, Ray, gamma};
 
 /// Nothing at or beyond this ray parameter is ever reported.
 ///
@@ -71,6 +71,33 @@ pub fn padded_four(boxes: &mut [[Vec4; 2]; 3]) {
 
 /// Bytes of the planes of one side of all children of a node.
 pub(super) const PLANES: u32 = size_of::<[f32; WIDTH]>() as u32;
+
+/// [`SlabRay::can_meet`] for many rays, a lane each: origins, directions, and the ends of the valid
+/// intervals.
+#[inline(always)]
+pub(super) fn can_meet<V: Lanes>(
+    origin: [V; 3],
+    direction: [V; 3],
+    [t_min, t_max]: [V; 2],
+) -> V::Mask {
+    let zero = V::splat(0.0);
+    // Zero, or NaN if anything is infinite or NaN.
+    let mut nothing = t_min * zero;
+    let mut is_zero = zero.eq(zero);
+    for axis in 0..3 {
+        nothing = nothing + origin[axis] * zero + direction[axis] * zero;
+        is_zero = is_zero & direction[axis].eq(zero);
+    }
+    V::without(nothing.eq(zero) & t_min.lt(t_max), is_zero)
+}
+
+/// One over a component of the direction as [`SlabRay::inverse_direction`] has it, for many rays.
+#[inline(always)]
+pub(super) fn inverse<V: Lanes>(direction: V) -> V {
+    (V::splat(1.0) / (direction + V::splat(0.0)))
+        .min(V::splat(f32::MAX))
+        .max(V::splat(-f32::MAX))
+}
 
 /// A ray prepared for box tests.
 #[derive(Clone, Copy, Debug)]

@@ -145,25 +145,47 @@ impl Packet {
         corners: &Corners,
         (triangle, group): (usize, usize),
     ) -> Edges<V> {
-        let (shear_x, shear_y) = (V::load(&self.x[group]), V::load(&self.y[group]));
-        let at = |corner: usize, axis: usize| {
-            let value = V::splat(corners[corner][axis][triangle]);
-            if SHARED {
-                value
-            } else {
-                value - rays.origin(usize::from(self.axes[axis]) % 3, group)
-            }
-        };
-        let corner = |corner: usize| {
-            let z = at(corner, 2);
-            (at(corner, 0) - shear_x * z, at(corner, 1) - shear_y * z)
-        };
-        let (a, b, c) = (corner(0), corner(1), corner(2));
+        let place = (triangle, group);
+        let a = self.corner::<V, SHARED>(rays, &corners[0], place);
+        let b = self.corner::<V, SHARED>(rays, &corners[1], place);
+        let c = self.corner::<V, SHARED>(rays, &corners[2], place);
         Edges {
             u: c.0 * b.1 - c.1 * b.0,
             v: a.0 * c.1 - a.1 * c.0,
             w: b.0 * a.1 - b.1 * a.0,
         }
+    }
+
+    /// One vertex of a triangle as a group of rays sees it, sheared. Not a closure: those are not
+    /// always inlined.
+    #[inline(always)]
+    fn corner<V: Lanes, const SHARED: bool>(
+        &self,
+        rays: &PacketRays,
+        corner: &[[f32; BLOCK]; 3],
+        place: (usize, usize),
+    ) -> (V, V) {
+        let z = self.seen::<V, SHARED>(rays, corner, 2, place);
+        (
+            self.seen::<V, SHARED>(rays, corner, 0, place) - V::load(&self.x[place.1]) * z,
+            self.seen::<V, SHARED>(rays, corner, 1, place) - V::load(&self.y[place.1]) * z,
+        )
+    }
+
+    /// One coordinate of that vertex, of those in the order of the axes.
+    #[inline(always)]
+    fn seen<V: Lanes, const SHARED: bool>(
+        &self,
+        rays: &PacketRays,
+        corner: &[[f32; BLOCK]; 3],
+        axis: usize,
+        (triangle, group): (usize, usize),
+    ) -> V {
+        let value = V::splat(corner[axis][triangle]);
+        if SHARED {
+            return value;
+        }
+        value - rays.origin(usize::from(self.axes[axis]) % 3, group)
     }
 
     /// The same as [`Shear::hits`].
@@ -183,10 +205,7 @@ impl Packet {
         let distance = if SHARED {
             V::splat(planes.distance[triangle])
         } else {
-            let at = |axis: usize| {
-                V::splat(corners[0][axis][triangle])
-                    - rays.origin(usize::from(self.axes[axis]) % 3, group)
-            };
+            let at = |axis| self.seen::<V, SHARED>(rays, &corners[0], axis, (triangle, group));
             normal[0] * at(0) + normal[1] * at(1) + normal[2] * at(2)
         };
         let (x, y, z) = (&self.x[group], &self.y[group], &self.z[group]);

@@ -1,4 +1,4 @@
-use super::super::slab::{FAR_MARGIN, SlabRay, T_FAR};
+use super::super::slab::{FAR_MARGIN, SlabRay, T_FAR, can_meet, inverse};
 use super::super::tree::BLOCK;
 use crate::math::{LANES, Lanes, Ray};
 
@@ -43,20 +43,11 @@ impl PacketRays {
     /// in the signs of their directions.
     #[inline(always)]
     pub(super) fn set<V: Lanes>(&mut self, rays: &[Ray; PACKET]) -> bool {
-        for (i, ray) in rays.iter().enumerate() {
-            let (group, lane) = (i / LANES, i % LANES);
-            let (origin, direction) = (ray.origin.to_array(), ray.direction.to_array());
-            for axis in 0..3 {
-                self.origin[axis][group][lane] = origin[axis];
-                self.direction[axis][group][lane] = direction[axis];
-            }
-            self.t_min[group][lane] = ray.t_min;
-            self.t_max[group][lane] = ray.t_max;
-        }
         let mut is_valid = true;
         let mut negative = [[0; 3]; GROUPS];
         for (group, negative) in negative.iter_mut().enumerate() {
-            is_valid &= self.prepare::<V>(group, negative);
+            let numbers = V::of_first_rays(&rays[group * LANES..]);
+            is_valid &= self.prepare::<V>(group, numbers, negative);
         }
         let first = [negative[0][0] & 1, negative[0][1] & 1, negative[0][2] & 1];
         self.octant = first[0] | first[1] << 1 | first[2] << 2;
@@ -64,30 +55,29 @@ impl PacketRays {
         is_valid && negative.iter().all(|negative| *negative == all)
     }
 
-    /// The computations of [`SlabRay::new`] for one group; a bit in `negative` for each ray whose
-    /// direction is negative on that axis. False if a ray can meet nothing.
+    /// Takes in the numbers of the rays of one group, and makes what [`SlabRay::new`] makes of them; a
+    /// bit in `negative` for each ray whose direction is negative on that axis. False if a ray can meet
+    /// nothing.
     #[inline(always)]
-    fn prepare<V: Lanes>(&mut self, group: usize, negative: &mut [u32; 3]) -> bool {
+    fn prepare<V: Lanes>(
+        &mut self,
+        group: usize,
+        [ox, oy, oz, dx, dy, dz, t_min, t_max]: [V; 8],
+        negative: &mut [u32; 3],
+    ) -> bool {
         let zero = V::splat(0.0);
-        let (t_min, t_max) = (self.t_min::<V>(group), self.t_max::<V>(group));
-        // Zero, or NaN if anything is infinite or NaN.
-        let mut nothing = t_min * zero;
-        let mut is_zero = V::eq(zero, zero);
+        let (origin, direction) = ([ox, oy, oz], [dx, dy, dz]);
+        let is_valid = V::bits(can_meet(origin, direction, [t_min, t_max])) == 0xff;
         for (axis, negative) in negative.iter_mut().enumerate() {
-            let direction = V::load(&self.direction[axis][group]);
-            nothing = nothing + self.origin::<V>(axis, group) * zero + direction * zero;
-            is_zero = is_zero & direction.eq(zero);
-            let direction = direction + zero;
+            let direction = direction[axis] + zero;
+            origin[axis].store(&mut self.origin[axis][group]);
             direction.store(&mut self.direction[axis][group]);
-            let inverse = (V::splat(1.0) / direction)
-                .min(V::splat(f32::MAX))
-                .max(V::splat(-f32::MAX));
-            inverse.store(&mut self.inverse[axis][group]);
+            inverse(direction).store(&mut self.inverse[axis][group]);
             *negative = V::bits(direction.lt(zero));
         }
-        let is_valid = V::bits(nothing.eq(zero) & t_min.lt(t_max));
+        t_min.store(&mut self.t_min[group]);
         t_max.min(V::splat(T_FAR)).store(&mut self.t_max[group]);
-        is_valid == 0xff && V::bits(is_zero) == 0
+        is_valid
     }
 
     /// True when all rays start at one point.

@@ -71,12 +71,7 @@ impl Bins {
         let mut origins = [Ends::<V>::none(); 3];
         let mut reaches = [Ends::<V>::none(); 3];
         for first in (0..rays.len()).step_by(V::N) {
-            let last = rays.len() - 1;
-            let mut some = [&rays[first]; ROW];
-            for (i, ray) in some.iter_mut().enumerate().take(V::N).skip(1) {
-                *ray = &rays[(first + i).min(last)];
-            }
-            let [ox, oy, oz, dx, dy, dz, t_min, t_max] = V::of_rays(&some);
+            let [ox, oy, oz, dx, dy, dz, t_min, t_max] = V::of_first_rays(&rays[first..]);
             let (key, plain) = keys_of([ox, oy, oz], [dx, dy, dz], [t_min, t_max]);
             keys[first..first + V::N].copy_from_slice(&key.to_array()[..V::N]);
             let (origin, direction) = ([ox, oy, oz], [dx, dy, dz]);

@@ -92,6 +92,18 @@ pub trait Lanes:
     /// Origins, directions, `t_min` and `t_max` of rays, as many as there are lanes.
     fn of_rays(rays: &[&Ray; ROW]) -> [Self; 8];
 
+    /// The same of the first rays of `rays`, at least one; the last again where there are fewer than
+    /// lanes.
+    #[inline(always)]
+    fn of_first_rays(rays: &[Ray]) -> [Self; 8] {
+        let last = rays.len() - 1;
+        let mut some = [&rays[0]; ROW];
+        for (i, ray) in some.iter_mut().enumerate().take(Self::N).skip(1) {
+            *ray = &rays[i.min(last)];
+        }
+        Self::of_rays(&some)
+    }
+
     /// The rays with these numbers, to the start of a row.
     fn to_rays(numbers: [Self; 8], rays: &mut [Ray; ROW]);
 
