@@ -1,3 +1,4 @@
+use std::ops::AddAssign;
 use std::time::{Duration, Instant};
 
 use rustix::time::{ClockId, clock_gettime};
@@ -9,6 +10,13 @@ pub(crate) struct Taken {
     pub(crate) wall: f64,
     /// Of processors, which other programs on the machine disturb less.
     pub(crate) processor: f64,
+}
+
+impl AddAssign for Taken {
+    fn add_assign(&mut self, more: Self) {
+        self.wall += more.wall;
+        self.processor += more.processor;
+    }
 }
 
 /// Does `work`; the processor time is that of all threads of this process.

@@ -1,3 +1,4 @@
+use std::ops::Range;
 use std::sync::{Barrier, Mutex};
 use std::thread;
 
@@ -13,6 +14,10 @@ use super::{Exact, Protocol, Subject, System, Tracer, median};
 /// Rays that a thread takes at once, as a render does.
 const BATCH: usize = 4096;
 
+/// Rays that a system traces before it is the next one's turn: so few that what disturbs the machine
+/// disturbs all of them, and so many that they hardly miss what the others drove out of the caches.
+const PART: usize = 8 * BATCH;
+
 /// A run over a ray set that takes more wall seconds than this is not repeated.
 const LONG_RUN: f64 = 2.5;
 
@@ -21,7 +26,7 @@ const LONG_BUILD: f64 = 8.0;
 
 /// Builds and traces one subject with every system.
 ///
-/// In each round every system traces the same rays in turn, so that what disturbs the machine
+/// In each round every system traces the same rays, a part in turn, so that what disturbs the machine
 /// disturbs all of them. Ratios are medians of ratios within a round.
 pub(crate) fn contest(subject: &Subject, systems: &[System], protocol: &Protocol) -> SceneResult {
     let aggregate = Aggregate::build(subject.shapes.clone(), BvhSettings::default());
@@ -103,7 +108,7 @@ fn trace(set: &RaySet, systems: &[(&str, &dyn Tracer)], protocol: &Protocol) -> 
     let first: Vec<(Mismatches, bool)> = systems
         .iter()
         .map(|(_, tracer)| {
-            let taken = hits.trace(set, *tracer, 1);
+            let taken = hits.trace(set, 0..set.rays.len(), *tracer, 1);
             (hits.mismatches(set), taken.wall > LONG_RUN)
         })
         .collect();
@@ -112,13 +117,19 @@ fn trace(set: &RaySet, systems: &[(&str, &dyn Tracer)], protocol: &Protocol) -> 
         let mut rates = vec![Vec::new(); systems.len()];
         let mut walls = vec![Vec::new(); systems.len()];
         for round in 0..protocol.rounds {
-            for (i, (_, tracer)) in systems.iter().enumerate() {
-                if round > 0 && first[i].1 {
-                    continue;
+            let mut taken = vec![Taken::default(); systems.len()];
+            for from in (0..set.rays.len()).step_by(PART) {
+                let part = from..(from + PART).min(set.rays.len());
+                for (i, (_, tracer)) in systems.iter().enumerate() {
+                    if round == 0 || !first[i].1 {
+                        taken[i] += hits.trace(set, part.clone(), *tracer, threads);
+                    }
                 }
-                let Run { rate, wall } = hits.trace(set, *tracer, threads);
-                rates[i].push(rate);
-                walls[i].push(set.rays.len() as f64 / wall);
+            }
+            for (i, taken) in taken.iter().enumerate().filter(|(_, t)| t.wall > 0.0) {
+                let rays = set.rays.len() as f64;
+                rates[i].push(rays * threads as f64 / taken.processor);
+                walls[i].push(rays / taken.wall);
             }
         }
         let anchor = anchor(systems.iter().map(|(name, _)| *name));
@@ -138,13 +149,6 @@ fn trace(set: &RaySet, systems: &[(&str, &dyn Tracer)], protocol: &Protocol) -> 
     results
 }
 
-/// What one run over a ray set gave.
-struct Run {
-    /// Rays per second of processor time, times the threads.
-    rate: f64,
-    wall: f64,
-}
-
 /// The buffers that all systems write.
 struct Hits {
     closest: Vec<Hit>,
@@ -161,23 +165,26 @@ impl Hits {
         }
     }
 
-    fn trace(&mut self, set: &RaySet, tracer: &dyn Tracer, threads: usize) -> Run {
-        let batches = set.rays.chunks(BATCH);
+    /// Traces the rays in `part`; the processor time is that of all threads.
+    fn trace(
+        &mut self,
+        set: &RaySet,
+        part: Range<usize>,
+        tracer: &dyn Tracer,
+        threads: usize,
+    ) -> Taken {
+        let batches = set.rays[part.clone()].chunks(BATCH);
         if set.kind.is_shadow() {
-            let work = batches.zip(self.occluded.chunks_mut(BATCH));
-            run(work, threads, |(rays, out)| {
-                tracer.any_hit(rays, out);
-                rays.len()
-            })
+            let work = batches.zip(self.occluded[part].chunks_mut(BATCH));
+            run(work, threads, |(rays, out)| tracer.any_hit(rays, out))
         } else {
-            let work = batches.zip(self.closest.chunks_mut(BATCH));
+            let work = batches.zip(self.closest[part].chunks_mut(BATCH));
             run(work, threads, |(rays, out)| {
                 if set.kind == Kind::Primary {
                     tracer.primary_hit(rays, out);
                 } else {
                     tracer.closest_hit(rays, out);
                 }
-                rays.len()
             })
         }
     }
@@ -191,32 +198,29 @@ impl Hits {
     }
 }
 
-/// Lets `threads` threads take batches until none are left; `trace` gives the number of rays of one.
+/// Lets `threads` threads take batches until none are left; the processor time is that of all of them.
 fn run<B: Send>(
     batches: impl Iterator<Item = B> + Send,
     threads: usize,
-    trace: impl Fn(B) -> usize + Sync,
-) -> Run {
+    trace: impl Fn(B) + Sync,
+) -> Taken {
     let queue = Mutex::new(batches);
     let next = || queue.lock().expect("no thread panics with the lock").next();
     let start = Barrier::new(threads);
     let work = || {
         start.wait();
-        let work = || std::iter::from_fn(next).map(&trace).sum::<usize>();
-        of_thread(work)
+        of_thread(|| std::iter::from_fn(next).for_each(&trace)).1
     };
-    let (done, taken) = of_process(|| {
+    let (all, taken) = of_process(|| {
         thread::scope(|scope| {
             let workers: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
-            let done = workers.into_iter().map(|worker| worker.join());
-            done.map(|done| done.expect("tracing does not panic"))
-                .collect::<Vec<_>>()
+            let all = workers.into_iter().map(|worker| worker.join());
+            all.map(|taken| taken.expect("tracing does not panic").processor)
+                .sum()
         })
     });
-    let rays: usize = done.iter().map(|(rays, _)| rays).sum();
-    let processor: f64 = done.iter().map(|(_, taken)| taken.processor).sum();
-    Run {
-        rate: (rays * threads) as f64 / processor,
-        wall: taken.wall,
+    Taken {
+        processor: all,
+        ..taken
     }
 }

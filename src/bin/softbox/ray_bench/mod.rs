@@ -5,7 +5,7 @@
 //! - All systems write into the same buffers. What a system needs to turn a ray into its own form is
 //!   part of its time; making its input mesh is not.
 //! - Rates count processor time, which other work on the machine disturbs less than wall time. They
-//!   are medians over rounds; in each round all systems take turns.
+//!   are medians over rounds; in each round all systems take turns, some milliseconds each.
 //! - Primary rays go in tiles of 8 x 8 pixels, and ours and the packets of others may use that. Bounces are diffuse (proportional to the cosine) and
 //!   shadow rays go to a random point of the lamp; both keep the order of the primary rays.
 
