@@ -13,6 +13,7 @@ mod build;
 mod entrance;
 mod expected;
 mod leaves;
+mod memory;
 mod node;
 mod octant;
 mod overlap;
@@ -31,7 +32,7 @@ mod tree;
 
 pub use build::Progress;
 pub use leaves::{Leaves, PacketLeaves, Work};
-pub use packet::{GROUPS, PACKET, PacketRays, PerRay};
+pub use packet::{GROUPS, PACKET, PacketRays, PerRay, of_ray, of_ray_mut};
 pub use settings::{BvhKind, BvhQuality, BvhSettings};
 pub use slab::{FAR_MARGIN, SlabRay, T_FAR, padded, padded_four};
 pub use stats::BvhStats;

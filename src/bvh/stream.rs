@@ -1,7 +1,8 @@
 use super::entrance::Entrance;
 use super::leaves::{Leaves, Work};
-use super::node::{LEAF, WideNode};
-use super::simd::{Kernel, NodeTest, prefetch};
+use super::memory::Memory;
+use super::node::LEAF;
+use super::simd::{Kernel, NodeTest};
 use super::slab::SlabRay;
 use super::stack::{BOTTOM, DONE, Stack};
 use super::tree::Bvh;
@@ -46,9 +47,7 @@ const ALL: LaneSet = LaneSet::MAX / 3;
 struct Arrivals {
     /// The upper two bits of what each lane comes to.
     kinds: u64,
-    /// Where nodes and blocks lie, moved such that the whole reference of a leaf is its index.
-    memory: [*const u8; 2],
-    sizes: [usize; 2],
+    memory: Memory,
 }
 
 /// Lanes by what they have come to.
@@ -59,33 +58,11 @@ struct Sorted {
 }
 
 impl Arrivals {
-    fn new(bvh: &Bvh, leaves: &impl Leaves) -> Self {
-        let (nodes, blocks) = (bvh.nodes(), leaves.blocks());
-        let sizes = [
-            size_of::<WideNode>(),
-            size_of_val(blocks).checked_div(blocks.len()).unwrap_or(0),
-        ];
-        let blocks: *const u8 = blocks.as_ptr().cast();
-        Self {
-            kinds: 0,
-            memory: [
-                nodes.as_ptr().cast(),
-                blocks.wrapping_sub(LEAF as usize * sizes[1]),
-            ],
-            sizes,
-        }
-    }
-
-    /// Notes that `lane` comes to `at`, and asks for the memory of that step. No branch: what comes
-    /// next is hard to predict.
+    /// Notes that `lane` comes to `at`, and asks for the memory of that step.
     #[inline(always)]
     fn put(&mut self, lane: usize, at: u32) {
         self.kinds |= u64::from(at >> 30) << (2 * lane);
-        let is_leaf = (at >> LEAF.trailing_zeros()) as usize;
-        prefetch(
-            self.memory[is_leaf].wrapping_add(at as usize * self.sizes[is_leaf]),
-            4,
-        );
+        self.memory.fetch(at);
     }
 
     /// The lanes in `moved` by what they have come to since this was last asked.
@@ -236,7 +213,10 @@ impl<L: Leaves, F: FnMut(usize, Option<&L::Query>), const ANY: bool, const STACK
         let mut lanes = [self.lane(first.0); LANES];
         let mut stacks = [Stack::<STACK>::EMPTY; LANES];
         let nodes = bvh.nodes();
-        let mut arrivals = Arrivals::new(bvh, leaves);
+        let mut arrivals = Arrivals {
+            kinds: 0,
+            memory: Memory::new(bvh, leaves),
+        };
         let mut started: LaneSet = 0;
         let mut next = Some(first);
         for (number, (lane, stack)) in lanes.iter_mut().zip(&mut stacks).enumerate() {

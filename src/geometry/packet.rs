@@ -4,7 +4,9 @@ use super::Hit;
 use super::block::Block;
 use super::leaf::Query;
 use super::triangle::Shear;
-use crate::bvh::{BLOCK, GROUPS, PACKET, PacketRays, PerRay, SlabRay, padded_four};
+use crate::bvh::{
+    BLOCK, GROUPS, PACKET, PacketRays, PerRay, SlabRay, of_ray, of_ray_mut, padded_four,
+};
 use crate::math::{Lanes, Ray, set_bits};
 
 /// Rays in a group.
@@ -287,7 +289,7 @@ impl Packet {
     /// The query of ray `i` by itself.
     #[inline(always)]
     pub(super) fn query(&self, i: usize) -> Query {
-        let at = |values: &PerRay| values[i / LANES % GROUPS][i % LANES];
+        let at = |values: &PerRay| of_ray(values, i);
         let hit = Hit {
             t: at(&self.t),
             primitive: at(&self.primitive).to_bits(),
@@ -303,19 +305,18 @@ impl Packet {
     /// Puts the best hit of ray `i` back.
     #[inline(always)]
     pub(super) fn put(&mut self, rays: &PacketRays, i: usize, query: &Query) {
-        let (group, lane) = (i / LANES % GROUPS, i % LANES);
         let (hit, end) = (&query.hit, rays.t_max_of(i));
-        self.limit[group][lane] = if hit.t < end { hit.t } else { end };
-        self.t[group][lane] = hit.t;
-        self.b1[group][lane] = hit.b1;
-        self.b2[group][lane] = hit.b2;
-        self.primitive[group][lane] = f32::from_bits(hit.primitive);
+        *of_ray_mut(&mut self.limit, i) = if hit.t < end { hit.t } else { end };
+        *of_ray_mut(&mut self.t, i) = hit.t;
+        *of_ray_mut(&mut self.b1, i) = hit.b1;
+        *of_ray_mut(&mut self.b2, i) = hit.b2;
+        *of_ray_mut(&mut self.primitive, i) = f32::from_bits(hit.primitive);
     }
 
     /// Lets ray `i` want nothing more.
     #[inline(always)]
     pub(super) fn drop_ray(&mut self, i: usize) {
-        self.limit[i / LANES % GROUPS][i % LANES] = f32::NEG_INFINITY;
+        *of_ray_mut(&mut self.limit, i) = f32::NEG_INFINITY;
     }
 
     /// Does something with ray `i` by itself.

@@ -9,13 +9,14 @@ mod pending;
 mod pool;
 mod rays;
 
-pub use rays::{GROUPS, PACKET, PacketRays, PerRay};
+pub use rays::{GROUPS, PACKET, PacketRays, PerRay, of_ray, of_ray_mut};
 
 use super::leaves::{PacketLeaves, Work};
-use super::node::{LEAF, WideNode};
-use super::simd::{Kernel, NodeTest, prefetch};
+use super::memory::Memory;
+use super::node::LEAF;
+use super::simd::{Kernel, NodeTest};
 use super::tree::Bvh;
-use crate::math::{LANES, Ray};
+use crate::math::Ray;
 use interval::Interval;
 use pending::Pending;
 use pool::{Lane, Pool, take};
@@ -48,6 +49,7 @@ struct Room<Q, P, const STACK: usize> {
     packet: P,
     pending: Pending,
     pool: Pool<Q, STACK>,
+    memory: Memory,
     work: Work,
 }
 
@@ -63,6 +65,7 @@ impl<L: PacketLeaves, F: FnMut(usize, Option<&L::Query>), const STACK: usize> Ke
             packet: L::Packet::default(),
             pending: Pending::new(self.bvh.wide_depth()),
             pool: Pool::new(),
+            memory: Memory::new(self.bvh, self.leaves),
             work: Work::default(),
         };
         let (packets, last) = self.rays.as_chunks::<PACKET>();
@@ -165,8 +168,9 @@ impl<L: PacketLeaves, F: FnMut(usize, Option<&L::Query>), const STACK: usize>
             } else if at & LEAF == 0 {
                 room.work.nodes += u64::from(count);
                 let (node, pending) = (&self.bvh.nodes()[at as usize], &mut room.pending);
+                let memory = &room.memory;
                 let packet = (&room.rays, &interval, limit, active);
-                let found = |child| self.prefetch(child);
+                let found = |child| memory.fetch(child);
                 top = if shared {
                     pending.open::<N::Rays, true>(top, node, packet, found)
                 } else {
@@ -203,23 +207,12 @@ impl<L: PacketLeaves, F: FnMut(usize, Option<&L::Query>), const STACK: usize>
     ) -> Lane<L::Query> {
         Lane {
             slab: room.rays.slab(i),
-            limit: L::limit(&room.packet)[i / LANES % GROUPS][i % LANES],
+            limit: of_ray(L::limit(&room.packet), i),
             at,
             top: 0,
             ray: (first + i) as u32,
             query: self.leaves.of_packet(&room.packet, i),
         }
-    }
-
-    /// Asks for the memory of a node or leaf.
-    #[inline(always)]
-    fn prefetch(&self, at: u32) {
-        let (memory, size): (*const u8, usize) = if at & LEAF != 0 {
-            (self.leaves.blocks().as_ptr().cast(), size_of::<L::Block>())
-        } else {
-            (self.bvh.nodes().as_ptr().cast(), size_of::<WideNode>())
-        };
-        prefetch(memory.wrapping_add((at & !LEAF) as usize * size), 4);
     }
 
     /// Whether `count` rays that meet what lies below `at` will find different ways there.
@@ -248,7 +241,7 @@ impl<L: PacketLeaves, F: FnMut(usize, Option<&L::Query>), const STACK: usize>
             room.pool.add(lane, |stacks, bottom| {
                 let entries = pending.references[..top].iter().zip(&pending.near);
                 entries.fold(bottom, |to, (&reference, near)| {
-                    let near = near[i / LANES % GROUPS][i % LANES];
+                    let near = of_ray(near, i);
                     stacks.put(to, (reference, near), lane.limit)
                 })
             });
@@ -261,7 +254,8 @@ impl<L: PacketLeaves, F: FnMut(usize, Option<&L::Query>), const STACK: usize>
     fn finish<N: NodeTest>(&mut self, keep: u32, room: &mut Room<L::Query, L::Packet, STACK>) {
         let set = (room.pool.taken(), keep);
         let (pool, work) = (&mut room.pool, &mut room.work);
-        let mut done = pool.run::<N, L>(set, self.bvh, self.leaves, self.rays, work);
+        let tree = (self.bvh, self.leaves, &room.memory);
+        let mut done = pool.run::<N, L>(set, tree, self.rays, work);
         while done != 0 {
             let lane = pool.remove(take(&mut done));
             (self.answer)(lane.ray as usize, Some(&lane.query));

@@ -1,6 +1,7 @@
 use super::super::leaves::{Leaves, Work};
-use super::super::node::{LEAF, WideNode};
-use super::super::simd::{NodeTest, prefetch};
+use super::super::memory::Memory;
+use super::super::node::LEAF;
+use super::super::simd::NodeTest;
 use super::super::slab::SlabRay;
 use super::super::stack::{BOTTOM, DONE, Stack};
 use super::super::tree::Bvh;
@@ -102,8 +103,7 @@ impl<Q: Copy, const STACK: usize> Pool<Q, STACK> {
     pub(super) fn run<N: NodeTest, L: Leaves<Query = Q>>(
         &mut self,
         (set, keep): (u64, u32),
-        bvh: &Bvh,
-        leaves: &L,
+        (bvh, leaves, memory): (&Bvh, &L, &Memory),
         rays: &[Ray],
         work: &mut Work,
     ) -> u64 {
@@ -123,7 +123,7 @@ impl<Q: Copy, const STACK: usize> Pool<Q, STACK> {
                 let (top, octant) = (lane.top as usize, lane.slab.octant as usize);
                 let stack = &mut self.stacks[number];
                 lane.top = stack.push::<N, false>(top, octant, met, &node.children) as u32;
-                self.next(number, bvh, leaves);
+                self.next(number, memory);
             }
             let mut now = set & self.leaves;
             self.leaves &= !set;
@@ -138,25 +138,20 @@ impl<Q: Copy, const STACK: usize> Pool<Q, STACK> {
                     lane.top = stack.cull::<N>(lane.top as usize, limit) as u32;
                     lane.limit = limit;
                 }
-                self.next(number, bvh, leaves);
+                self.next(number, memory);
             }
         }
     }
 
     /// Takes what a ray visits next off its stack.
     #[inline(always)]
-    fn next<L: Leaves<Query = Q>>(&mut self, number: usize, bvh: &Bvh, leaves: &L) {
+    fn next(&mut self, number: usize, memory: &Memory) {
         let lane = &mut self.lanes[number];
         let (at, top) = self.stacks[number].pop(lane.top as usize);
         (lane.at, lane.top) = (at, top as u32);
-        let (is_leaf, is_done) = (at & LEAF != 0, at == DONE);
+        let is_leaf = at & LEAF != 0;
         self.nodes |= u64::from(!is_leaf) << number;
-        self.leaves |= u64::from(is_leaf & !is_done) << number;
-        let (memory, size): (*const u8, usize) = if is_leaf {
-            (leaves.blocks().as_ptr().cast(), size_of::<L::Block>())
-        } else {
-            (bvh.nodes().as_ptr().cast(), size_of::<WideNode>())
-        };
-        prefetch(memory.wrapping_add((at & !LEAF) as usize * size), 4);
+        self.leaves |= u64::from(is_leaf & (at != DONE)) << number;
+        memory.fetch(at);
     }
 }

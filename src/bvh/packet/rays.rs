@@ -11,6 +11,18 @@ pub const PACKET: usize = GROUPS * LANES;
 /// A number for each ray of a packet.
 pub type PerRay = [[f32; LANES]; GROUPS];
 
+/// The number of ray `i`.
+#[inline(always)]
+pub fn of_ray(values: &PerRay, i: usize) -> f32 {
+    values.as_flattened()[i % PACKET]
+}
+
+/// The place of the number of ray `i`.
+#[inline(always)]
+pub fn of_ray_mut(values: &mut PerRay, i: usize) -> &mut f32 {
+    &mut values.as_flattened_mut()[i % PACKET]
+}
+
 /// The rays of a packet side by side, prepared for box tests: all valid, all in one octant. The
 /// numbers are those of [`SlabRay`].
 #[derive(Clone, Debug)]
@@ -96,7 +108,7 @@ impl PacketRays {
     /// Ray `i` by itself.
     #[inline(always)]
     pub fn slab(&self, i: usize) -> SlabRay {
-        let at = |values: &PerRay| values[i / LANES % GROUPS][i % LANES];
+        let at = |values: &PerRay| of_ray(values, i);
         SlabRay {
             origin: [
                 at(&self.origin[0]),
@@ -154,7 +166,7 @@ impl PacketRays {
     /// End of the valid interval of ray `i`.
     #[inline(always)]
     pub fn t_max_of(&self, i: usize) -> f32 {
-        self.t_max[i / LANES % GROUPS][i % LANES]
+        of_ray(&self.t_max, i)
     }
 
     /// [`SlabRay::enter`] for the rays of a group and one box, which must not be empty: minimum and
