@@ -116,13 +116,15 @@ impl Query {
     #[inline(always)]
     fn triangles(&mut self, (ray, slab): (&Ray, &SlabRay), block: &Block) {
         let edges = self.shear.edges(slab.origin(), block);
-        let on_edge = edges.on_edge();
-        let inside = edges.inside() & !on_edge;
-        if on_edge != 0 {
-            self.triangles_on_edges((ray, slab), block, on_edge);
-        }
+        let mut inside = edges.inside();
         if inside == 0 {
             return;
+        }
+        // One of zero may be a rounding; where the others differ in sign it does not matter.
+        let on_edge = edges.on_edge() & inside;
+        if on_edge != 0 {
+            inside &= !on_edge;
+            self.triangles_on_edges((ray, slab), block, on_edge);
         }
         let (t, b1, b2) = self.shear.hits(&edges, block);
         let possible = t.cmpgt(Vec4::splat(slab.t_min()))

@@ -88,15 +88,20 @@ impl Packet {
                 let least = edges.u.min(edges.v).min(edges.w);
                 let most = edges.u.max(edges.v).max(edges.w);
                 let inside = least.ge(zero) | most.le(zero);
-                let on_edge = edges.u.eq(zero) | edges.v.eq(zero) | edges.w.eq(zero);
-                if V::bits(inside | on_edge) == 0 {
+                if V::bits(inside) == 0 {
                     continue;
                 }
+                // One of zero may be a rounding; where the others differ in sign it does not matter.
+                let on_edge = inside & (edges.u.eq(zero) | edges.v.eq(zero) | edges.w.eq(zero));
                 if V::bits(on_edge) != 0 {
                     self.on_edge(rays, block, (triangle, group), V::bits(on_edge));
                 }
                 let inside = V::without(inside, on_edge);
-                let planes = planes.get_or_insert_with(|| Planes::new(block, axes, &corners));
+                // Not `get_or_insert_with`, which is not inlined.
+                if planes.is_none() {
+                    planes = Some(Planes::new(block, axes, &corners));
+                }
+                let Some(planes) = &planes else { continue };
                 let place = (triangle, group);
                 let hits = self.hits::<V, SHARED>(rays.1, (&corners, planes), &edges, place);
                 self.offer(rays.1, hits, inside, (planes, block.id(triangle), place));
