@@ -12,6 +12,7 @@ mod blocks;
 mod build;
 mod entrance;
 mod expected;
+mod flight;
 mod leaves;
 mod memory;
 mod node;

@@ -8,6 +8,10 @@ pub(super) const WIDTH: usize = 8;
 /// Bit of a child reference that names a leaf; the rest is its first block.
 pub(super) const LEAF: u32 = 1 << 31;
 
+/// Nodes and blocks have numbers below this, so that the upper two bits of a reference tell nodes, leaves
+/// and [`super::stack::DONE`] apart.
+pub(super) const MOST: usize = 1 << 30;
+
 /// A child on its way into a [`WideNode`].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Child {

@@ -21,6 +21,9 @@ const PAD: f32 = gamma(16);
 /// for the roundings of the box test alone.
 pub const FAR_MARGIN: f32 = 1.0 + 2.0 * gamma(8);
 
+/// Bytes of the planes of one side of all children of a node.
+pub(super) const PLANES: u32 = size_of::<[f32; WIDTH]>() as u32;
+
 /// A step of this fraction of a number's size changes it.
 const ULP: f32 = f32::EPSILON;
 
@@ -68,9 +71,6 @@ pub fn padded_four(boxes: &mut [[Vec4; 2]; 3]) {
         boxes[axis] = [lo - pad, hi + pad];
     }
 }
-
-/// Bytes of the planes of one side of all children of a node.
-pub(super) const PLANES: u32 = size_of::<[f32; WIDTH]>() as u32;
 
 /// [`SlabRay::can_meet`] for many rays, a lane each: origins, directions, and the ends of the valid
 /// intervals.

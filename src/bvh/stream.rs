@@ -1,15 +1,12 @@
 use super::entrance::Entrance;
+use super::flight::{ALL, Arrivals, Flight, Lane, Sets, take_lane};
 use super::leaves::{Leaves, Work};
 use super::memory::Memory;
-use super::node::LEAF;
 use super::simd::{Kernel, NodeTest};
 use super::slab::SlabRay;
-use super::stack::{BOTTOM, DONE, Stack};
+use super::stack::{BOTTOM, Stack};
 use super::tree::Bvh;
 use crate::math::Ray;
-
-/// Rays in flight. Of 8, 16, 32 and 64 the fastest.
-const LANES: usize = 32;
 
 /// Many rays at once, a step each in turn, so that the memory that one ray waits for arrives while
 /// the others work.
@@ -20,62 +17,6 @@ pub(super) struct Stream<'a, L, F, const ANY: bool, const STACK: usize> {
     pub(super) rays: &'a [Ray],
     /// Takes the number of a ray and its answer; `None` if the ray can meet nothing.
     pub(super) answer: F,
-}
-
-/// A ray in flight.
-#[derive(Clone, Copy)]
-#[repr(align(64))]
-struct Lane<Q> {
-    slab: SlabRay,
-    limit: f32,
-    /// What is visited next.
-    at: u32,
-    /// Top of the stack.
-    top: u32,
-    /// Number of the ray.
-    ray: u32,
-    query: Q,
-}
-
-/// A bit for each lane: bit 2 n for lane n, so that two sets fit into one number.
-type LaneSet = u64;
-
-/// All lanes.
-const ALL: LaneSet = LaneSet::MAX / 3;
-
-/// Where lanes come to in one pass.
-struct Arrivals {
-    /// The upper two bits of what each lane comes to.
-    kinds: u64,
-    memory: Memory,
-}
-
-/// Lanes by what they have come to.
-struct Sorted {
-    at_node: LaneSet,
-    at_leaf: LaneSet,
-    done: LaneSet,
-}
-
-impl Arrivals {
-    /// Notes that `lane` comes to `at`, and asks for the memory of that step.
-    #[inline(always)]
-    fn put(&mut self, lane: usize, at: u32) {
-        self.kinds |= u64::from(at >> 30) << (2 * lane);
-        self.memory.fetch(at);
-    }
-
-    /// The lanes in `moved` by what they have come to since this was last asked.
-    #[inline(always)]
-    fn take(&mut self, moved: LaneSet) -> Sorted {
-        let kinds = std::mem::take(&mut self.kinds);
-        let (not_at_node, done) = ((kinds >> 1) & ALL, kinds & ALL);
-        Sorted {
-            at_node: moved & !not_at_node,
-            at_leaf: not_at_node & !done,
-            done,
-        }
-    }
 }
 
 /// Rays that have not started yet.
@@ -96,14 +37,6 @@ fn take(set: &mut u32) -> usize {
     let lowest = set.trailing_zeros();
     *set &= *set - 1;
     lowest as usize
-}
-
-/// Takes a lane out of a set.
-#[inline(always)]
-fn take_lane(set: &mut LaneSet) -> usize {
-    let lowest = set.trailing_zeros();
-    *set &= *set - 1;
-    (lowest / 2) as usize % LANES
 }
 
 impl<L: Leaves, F: FnMut(usize, Option<&L::Query>), const ANY: bool, const STACK: usize>
@@ -204,99 +137,51 @@ impl<L: Leaves, F: FnMut(usize, Option<&L::Query>), const ANY: bool, const STACK
 
     #[inline(always)]
     fn run<N: NodeTest>(mut self) -> Work {
-        let (bvh, leaves) = (self.bvh, self.leaves);
+        let (nodes, leaves) = (self.bvh.nodes(), self.leaves);
         let mut work = Work::default();
         let mut queue = Queue::default();
         let Some(first) = self.next::<N>(&mut queue, &mut work) else {
             return work;
         };
-        let mut lanes = [self.lane(first.0); LANES];
-        let mut stacks = [Stack::<STACK>::EMPTY; LANES];
-        let nodes = bvh.nodes();
-        let mut arrivals = Arrivals {
-            kinds: 0,
-            memory: Memory::new(bvh, leaves),
-        };
-        let mut started: LaneSet = 0;
-        let mut next = Some(first);
-        for (number, (lane, stack)) in lanes.iter_mut().zip(&mut stacks).enumerate() {
-            let Some(ray) = next
-                .take()
-                .or_else(|| self.next::<N>(&mut queue, &mut work))
-            else {
-                break;
-            };
-            self.start::<N>(lane, stack, ray);
-            arrivals.put(number, lane.at);
-            started |= 1 << (2 * number);
-        }
-        // Lanes whose next step is at a node, and at a leaf.
-        let Sorted {
-            mut at_node,
-            mut at_leaf,
-            ..
-        } = arrivals.take(started);
-        while at_node | at_leaf != 0 {
-            work.nodes += u64::from(at_node.count_ones());
-            let mut now = at_node;
-            while now != 0 {
-                let number = take_lane(&mut now);
-                let lane = &mut lanes[number];
-                let stack = &mut stacks[number];
-                let node = &nodes[lane.at as usize];
-                let met = N::enter(node, &lane.slab, lane.limit);
-                let (top, octant) = (lane.top as usize, lane.slab.octant as usize);
-                let top = stack.push::<N, ANY>(top, octant, met, &node.children);
-                let (at, top) = stack.pop(top);
-                (lane.at, lane.top) = (at, top as u32);
-                arrivals.put(number, at);
-            }
-            let come = arrivals.take(at_node);
-            let done = come.done;
-            at_leaf |= come.at_leaf;
-            let mut now = at_leaf;
-            while now != 0 {
-                let number = take_lane(&mut now);
-                let lane = &mut lanes[number];
-                let (block, blocks) = (lane.at & !LEAF, &mut work.blocks);
-                let ray = (&self.rays[lane.ray as usize], &lane.slab);
-                let limit = leaves.visit::<ANY>(block, ray, &mut lane.query, blocks);
-                let stack = &mut stacks[number];
-                let mut top = lane.top as usize;
-                if !ANY && limit < lane.limit {
-                    if top > BOTTOM {
-                        top = stack.cull::<N>(top, limit);
-                    }
-                    lane.limit = limit;
+        let memory = Memory::new(self.bvh, leaves);
+        let mut flight = Flight::<_, STACK>::new(self.lane(first.0));
+        let mut sets = Sets::default();
+        let (mut next, mut empty) = (Some(first), ALL);
+        let mut has_answers = false;
+        loop {
+            let (mut started, mut arrivals) = (0, Arrivals::default());
+            while empty != 0 {
+                let number = take_lane(&mut empty);
+                let (lane, stack) = flight.lane(number);
+                if has_answers {
+                    (self.answer)(lane.ray as usize, Some(&lane.query));
                 }
-                let (at, top) = if ANY && limit == f32::NEG_INFINITY {
-                    (DONE, BOTTOM)
-                } else {
-                    stack.pop(top)
-                };
-                (lane.at, lane.top) = (at, top as u32);
-                arrivals.put(number, at);
+                let ray = next
+                    .take()
+                    .or_else(|| self.next::<N>(&mut queue, &mut work));
+                let Some(ray) = ray else { continue };
+                self.start::<N>(lane, stack, ray);
+                memory.fetch(lane.at);
+                started |= arrivals.put(number, lane.at);
             }
-            at_node = come.at_node;
-            let come = arrivals.take(at_leaf);
-            at_node |= come.at_node;
-            at_leaf = come.at_leaf;
-            let mut now = done | come.done;
-            let mut started = 0;
-            while now != 0 {
-                let number = take_lane(&mut now);
-                let lane = &mut lanes[number];
-                (self.answer)(lane.ray as usize, Some(&lane.query));
-                if let Some(ray) = self.next::<N>(&mut queue, &mut work) {
-                    self.start::<N>(lane, &mut stacks[number], ray);
-                    arrivals.put(number, lane.at);
-                    started |= 1 << (2 * number);
-                }
+            has_answers = true;
+            sets.sort(started, &arrivals);
+            if sets.at_node | sets.at_leaf == 0 {
+                return work;
             }
-            let come = arrivals.take(started);
-            at_node |= come.at_node;
-            at_leaf |= come.at_leaf;
+            work.nodes += u64::from(sets.at_node.count_ones());
+            let moved = std::mem::take(&mut sets.at_node);
+            let arrivals = flight.pass_nodes::<N, ANY>(moved, nodes, &memory);
+            sets.sort(moved, &arrivals);
+            let moved = std::mem::take(&mut sets.at_leaf);
+            let arrivals = flight.pass_leaves::<N, ANY, L>(
+                moved,
+                (leaves, self.rays),
+                &memory,
+                &mut work.blocks,
+            );
+            sets.sort(moved, &arrivals);
+            empty = std::mem::take(&mut sets.done);
         }
-        work
     }
 }

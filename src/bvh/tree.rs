@@ -1,7 +1,7 @@
 use std::ops::Range;
 use std::time::Duration;
 
-use super::node::{LEAF, Part, WIDTH, WideNode};
+use super::node::{LEAF, MOST, Part, WIDTH, WideNode};
 use crate::math::Aabb;
 
 /// Primitives of one block: a leaf is one or more blocks in a row.
@@ -43,6 +43,7 @@ impl Bvh {
         excluded: usize,
         build_time: Duration,
     ) -> Self {
+        assert!(nodes.len() < MOST && blocks < MOST, "too many primitives");
         let mut depths = vec![1_u32; nodes.len()];
         for (i, node) in nodes.iter().enumerate().skip(1) {
             depths[i] = depths[node.parent as usize] + 1;
