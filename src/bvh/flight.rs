@@ -77,6 +77,47 @@ impl Sets {
     }
 }
 
+impl<Q> Lane<Q> {
+    /// Takes the step at a node, and finds what is visited next. No branch depends on the ray: what comes
+    /// next is hard to predict.
+    #[inline(always)]
+    pub(super) fn step_at_node<N: NodeTest, const ANY: bool, const STACK: usize>(
+        &mut self,
+        stack: &mut Stack<STACK>,
+        nodes: &[WideNode],
+    ) {
+        let node = &nodes[self.at as usize];
+        let met = N::enter(node, &self.slab, self.limit);
+        let (top, octant) = (self.top as usize, self.slab.octant as usize);
+        let top = stack.push::<N, ANY>(top, octant, met, &node.children);
+        let (at, top) = stack.pop(top);
+        (self.at, self.top) = (at, top as u32);
+    }
+
+    /// Takes the step at a leaf, and finds what is visited next. Adds the number of blocks to `blocks`.
+    #[inline(always)]
+    pub(super) fn step_at_leaf<N: NodeTest, const ANY: bool, const STACK: usize>(
+        &mut self,
+        stack: &mut Stack<STACK>,
+        (leaves, rays): (&impl Leaves<Query = Q>, &[Ray]),
+        blocks: &mut u64,
+    ) {
+        let ray = (&rays[self.ray as usize], &self.slab);
+        let limit = leaves.visit::<ANY>(self.at & !LEAF, ray, &mut self.query, blocks);
+        let mut top = self.top as usize;
+        if !ANY && limit < self.limit {
+            top = stack.cull::<N>(top, limit);
+            self.limit = limit;
+        }
+        let (at, top) = if ANY && limit == f32::NEG_INFINITY {
+            (DONE, BOTTOM)
+        } else {
+            stack.pop(top)
+        };
+        (self.at, self.top) = (at, top as u32);
+    }
+}
+
 impl<Q: Copy, const STACK: usize> Flight<Q, STACK> {
     /// With `lane` in all lanes.
     #[inline(always)]
@@ -87,13 +128,13 @@ impl<Q: Copy, const STACK: usize> Flight<Q, STACK> {
         }
     }
 
+    /// A lane and its stack.
     #[inline(always)]
     pub(super) fn lane(&mut self, number: usize) -> (&mut Lane<Q>, &mut Stack<STACK>) {
         (&mut self.lanes[number], &mut self.stacks[number])
     }
 
-    /// Lets the lanes in `moved` take their steps at nodes. No branch depends on the rays: what comes
-    /// next is hard to predict.
+    /// Lets the lanes in `moved` take their steps at nodes.
     #[inline(always)]
     pub(super) fn pass_nodes<N: NodeTest, const ANY: bool>(
         &mut self,
@@ -105,14 +146,9 @@ impl<Q: Copy, const STACK: usize> Flight<Q, STACK> {
         while moved != 0 {
             let number = take_lane(&mut moved);
             let (lane, stack) = self.lane(number);
-            let node = &nodes[lane.at as usize];
-            let met = N::enter(node, &lane.slab, lane.limit);
-            let (top, octant) = (lane.top as usize, lane.slab.octant as usize);
-            let top = stack.push::<N, ANY>(top, octant, met, &node.children);
-            let (at, top) = stack.pop(top);
-            (lane.at, lane.top) = (at, top as u32);
-            memory.fetch(at);
-            arrivals.put(number, at);
+            lane.step_at_node::<N, ANY, STACK>(stack, nodes);
+            memory.fetch(lane.at);
+            arrivals.put(number, lane.at);
         }
         arrivals
     }
@@ -130,23 +166,9 @@ impl<Q: Copy, const STACK: usize> Flight<Q, STACK> {
         while moved != 0 {
             let number = take_lane(&mut moved);
             let (lane, stack) = self.lane(number);
-            let ray = (&rays[lane.ray as usize], &lane.slab);
-            let limit = leaves.visit::<ANY>(lane.at & !LEAF, ray, &mut lane.query, blocks);
-            let mut top = lane.top as usize;
-            if !ANY && limit < lane.limit {
-                if top > BOTTOM {
-                    top = stack.cull::<N>(top, limit);
-                }
-                lane.limit = limit;
-            }
-            let (at, top) = if ANY && limit == f32::NEG_INFINITY {
-                (DONE, BOTTOM)
-            } else {
-                stack.pop(top)
-            };
-            (lane.at, lane.top) = (at, top as u32);
-            memory.fetch(at);
-            arrivals.put(number, at);
+            lane.step_at_leaf::<N, ANY, STACK>(stack, (leaves, rays), blocks);
+            memory.fetch(lane.at);
+            arrivals.put(number, lane.at);
         }
         arrivals
     }

@@ -93,6 +93,9 @@ impl<const SIZE: usize> Stack<SIZE> {
     /// anyway, and [`Self::pop`] needs no branch.
     #[inline(always)]
     pub(super) fn cull<N: NodeTest>(&mut self, top: usize, limit: f32) -> usize {
+        if top == BOTTOM {
+            return top;
+        }
         let (mut from, mut to) = (0, 0);
         while from < top {
             let at = from & Self::MASK;

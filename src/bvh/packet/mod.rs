@@ -11,6 +11,7 @@ mod rays;
 
 pub use rays::{GROUPS, PACKET, PacketRays, PerRay, of_ray, of_ray_mut};
 
+use super::flight::Lane;
 use super::leaves::{PacketLeaves, Work};
 use super::memory::Memory;
 use super::node::LEAF;
@@ -19,7 +20,7 @@ use super::tree::Bvh;
 use crate::math::Ray;
 use interval::Interval;
 use pending::Pending;
-use pool::{Lane, Pool, take};
+use pool::{Pool, take};
 
 /// Up to so many rays leave a packet at a node with many primitives for each; fewer are no packet.
 /// More (9) is 10 % faster where triangles are smaller than pixels, and 10 % slower elsewhere.

@@ -1,8 +1,8 @@
+use super::super::flight::Lane;
 use super::super::leaves::{Leaves, Work};
 use super::super::memory::Memory;
 use super::super::node::LEAF;
 use super::super::simd::NodeTest;
-use super::super::slab::SlabRay;
 use super::super::stack::{BOTTOM, DONE, Stack};
 use super::super::tree::Bvh;
 use crate::math::Ray;
@@ -18,21 +18,6 @@ pub(super) struct Pool<Q, const STACK: usize> {
     nodes: u64,
     leaves: u64,
     free: u64,
-}
-
-/// One of them.
-#[derive(Clone, Copy)]
-#[repr(align(64))]
-pub(super) struct Lane<Q> {
-    pub(super) slab: SlabRay,
-    pub(super) limit: f32,
-    /// What is visited next.
-    pub(super) at: u32,
-    /// Top of the stack.
-    pub(super) top: u32,
-    /// Number of the ray.
-    pub(super) ray: u32,
-    pub(super) query: Q,
 }
 
 /// Takes the lowest bit out of a set.
@@ -117,38 +102,26 @@ impl<Q: Copy, const STACK: usize> Pool<Q, STACK> {
             work.nodes += u64::from(now.count_ones());
             while now != 0 {
                 let number = take(&mut now);
-                let lane = &mut self.lanes[number];
-                let node = &bvh.nodes()[lane.at as usize];
-                let met = N::enter(node, &lane.slab, lane.limit);
-                let (top, octant) = (lane.top as usize, lane.slab.octant as usize);
-                let stack = &mut self.stacks[number];
-                lane.top = stack.push::<N, false>(top, octant, met, &node.children) as u32;
-                self.next(number, memory);
+                let (lane, stack) = (&mut self.lanes[number], &mut self.stacks[number]);
+                lane.step_at_node::<N, false, STACK>(stack, bvh.nodes());
+                let at = lane.at;
+                self.arrive(number, at, memory);
             }
             let mut now = set & self.leaves;
             self.leaves &= !set;
             while now != 0 {
                 let number = take(&mut now);
-                let lane = &mut self.lanes[number];
-                let ray = (&rays[lane.ray as usize], &lane.slab);
-                let blocks = &mut work.blocks;
-                let limit = leaves.visit::<false>(lane.at & !LEAF, ray, &mut lane.query, blocks);
-                if limit < lane.limit {
-                    let stack = &mut self.stacks[number];
-                    lane.top = stack.cull::<N>(lane.top as usize, limit) as u32;
-                    lane.limit = limit;
-                }
-                self.next(number, memory);
+                let (lane, stack) = (&mut self.lanes[number], &mut self.stacks[number]);
+                lane.step_at_leaf::<N, false, STACK>(stack, (leaves, rays), &mut work.blocks);
+                let at = lane.at;
+                self.arrive(number, at, memory);
             }
         }
     }
 
-    /// Takes what a ray visits next off its stack.
+    /// Notes that lane `number` comes to `at`, and asks for the memory of that step.
     #[inline(always)]
-    fn next(&mut self, number: usize, memory: &Memory) {
-        let lane = &mut self.lanes[number];
-        let (at, top) = self.stacks[number].pop(lane.top as usize);
-        (lane.at, lane.top) = (at, top as u32);
+    fn arrive(&mut self, number: usize, at: u32, memory: &Memory) {
         let is_leaf = at & LEAF != 0;
         self.nodes |= u64::from(!is_leaf) << number;
         self.leaves |= u64::from(is_leaf & (at != DONE)) << number;
