@@ -33,7 +33,7 @@ mod tree;
 
 pub use build::Progress;
 pub use leaves::{Leaves, PacketLeaves, Work};
-pub use packet::{GROUPS, PACKET, PacketRays, PerRay, of_ray, of_ray_mut};
+pub use packet::{PACKET, PacketRays, PerRay, groups};
 pub use settings::{BvhKind, BvhQuality, BvhSettings};
 pub use slab::{FAR_MARGIN, SlabRay, T_FAR, padded, padded_four};
 pub use stats::BvhStats;

@@ -69,7 +69,7 @@ impl<L: Leaves, F: FnMut(usize, Option<&L::Query>), const ANY: bool, const STACK
         while queue.waiting == 0 {
             let first = queue.next;
             let rest = self.rays.get(first..).filter(|rest| !rest.is_empty())?;
-            let entrance = Entrance::new::<N::Rays>(&self.bvh.nodes()[0], rest);
+            let entrance = Entrance::new::<N::Eight>(&self.bvh.nodes()[0], rest);
             work.nodes += u64::from(entrance.valid().count_ones());
             queue.next += entrance.count();
             (queue.first, queue.waiting) = (first, entrance.go_on());

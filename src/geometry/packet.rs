@@ -4,15 +4,10 @@ use super::Hit;
 use super::block::Block;
 use super::leaf::Query;
 use super::triangle::Shear;
-use crate::bvh::{
-    BLOCK, GROUPS, PACKET, PacketRays, PerRay, SlabRay, of_ray, of_ray_mut, padded_four,
-};
-use crate::math::{Lanes, Ray, set_bits};
+use crate::bvh::{BLOCK, PacketRays, PerRay, SlabRay, groups, padded_four};
+use crate::math::{Lanes, ROW, Ray, set_bits};
 
-/// Rays in a group.
-pub(super) const LANES: usize = PACKET / GROUPS;
-
-const ZERO: PerRay = [[0.0; LANES]; GROUPS];
+const ZERO: PerRay = PerRay::splat(0.0);
 
 /// The rays of a packet among the primitives: [`Query`] side by side, all sheared along one axis.
 #[derive(Clone, Copy, Debug)]
@@ -93,36 +88,38 @@ impl Packet {
     /// Takes in the rays, which have hit nothing yet; false if they are not longest along one axis.
     #[inline(always)]
     pub(super) fn set<V: Lanes>(&mut self, rays: &PacketRays) -> bool {
-        let mut longest = [[0; 2]; GROUPS];
-        for (group, longest) in longest.iter_mut().enumerate() {
+        // Of z and of y over x: bits that some and that all groups have.
+        let (mut some, mut all) = ([0; 2], [V::ALL; 2]);
+        for group in 0..groups::<V>() {
             let size = |axis: usize| rays.direction::<V>(axis, group).abs();
             let (x, y, z) = (size(0), size(1), size(2));
-            *longest = [V::bits(z.gt(x) & z.gt(y)), V::bits(y.gt(x))];
+            let longest = [V::bits(z.gt(x) & z.gt(y)), V::bits(y.gt(x))];
+            for i in 0..2 {
+                some[i] |= longest[i];
+                all[i] &= longest[i];
+            }
         }
-        let axis = |[z, y]: [u32; 2]| match (z, y) {
-            (0xff, _) => Some(2),
-            (0, 0xff) => Some(1),
-            (0, 0) => Some(0),
-            _ => None,
+        let z = match (some, all) {
+            (_, [z, _]) if z == V::ALL => 2,
+            ([0, _], [_, y]) if y == V::ALL => 1,
+            ([0, 0], _) => 0,
+            _ => return false,
         };
-        let Some(z) = axis(longest[0]) else {
-            return false;
-        };
-        if longest[1..].iter().any(|&more| axis(more) != Some(z)) {
-            return false;
-        }
         let (x, y) = ((z + 1) % 3, (z + 2) % 3);
         self.axes = [x as u8, y as u8, z as u8];
-        for group in 0..GROUPS {
+        for group in 0..groups::<V>() {
             let inverse = rays.inverse::<V>(z, group);
-            (rays.direction::<V>(x, group) * inverse).store(&mut self.x[group]);
-            (rays.direction::<V>(y, group) * inverse).store(&mut self.y[group]);
-            inverse.store(&mut self.z[group]);
-            rays.t_max::<V>(group).store(&mut self.limit[group]);
-            V::splat(Hit::MISS.t).store(&mut self.t[group]);
-            V::splat(0.0).store(&mut self.b1[group]);
-            V::splat(0.0).store(&mut self.b2[group]);
-            V::splat(f32::from_bits(Hit::MISS.primitive)).store(&mut self.primitive[group]);
+            self.x
+                .set_group(group, rays.direction::<V>(x, group) * inverse);
+            self.y
+                .set_group(group, rays.direction::<V>(y, group) * inverse);
+            self.z.set_group(group, inverse);
+            self.limit.set_group(group, rays.t_max::<V>(group));
+            self.t.set_group(group, V::splat(Hit::MISS.t));
+            self.b1.set_group(group, V::splat(0.0));
+            self.b2.set_group(group, V::splat(0.0));
+            let nothing = f32::from_bits(Hit::MISS.primitive);
+            self.primitive.set_group(group, V::splat(nothing));
         }
         true
     }
@@ -169,8 +166,8 @@ impl Packet {
     ) -> (V, V) {
         let z = self.seen::<V, SHARED>(rays, corner, 2, place);
         (
-            self.seen::<V, SHARED>(rays, corner, 0, place) - V::load(&self.x[place.1]) * z,
-            self.seen::<V, SHARED>(rays, corner, 1, place) - V::load(&self.y[place.1]) * z,
+            self.seen::<V, SHARED>(rays, corner, 0, place) - self.x.group::<V>(place.1) * z,
+            self.seen::<V, SHARED>(rays, corner, 1, place) - self.y.group::<V>(place.1) * z,
         )
     }
 
@@ -210,11 +207,11 @@ impl Packet {
             let at = |axis| self.seen::<V, SHARED>(rays, &corners[0], axis, (triangle, group));
             normal[0] * at(0) + normal[1] * at(1) + normal[2] * at(2)
         };
-        let (x, y, z) = (&self.x[group], &self.y[group], &self.z[group]);
-        let slope = normal[0] * V::load(x) + normal[1] * V::load(y) + normal[2];
+        let at = |values: &PerRay| values.group::<V>(group);
+        let slope = normal[0] * at(&self.x) + normal[1] * at(&self.y) + normal[2];
         let inverse = V::splat(1.0) / (edges.u + edges.v + edges.w);
         [
-            distance / slope * V::load(z),
+            distance / slope * at(&self.z),
             edges.v * inverse,
             edges.w * inverse,
         ]
@@ -230,7 +227,7 @@ impl Packet {
         (planes, primitive, (triangle, group)): (&Planes, u32, (usize, usize)),
     ) {
         let (t_min, t_max) = (rays.t_min::<V>(group), rays.t_max::<V>(group));
-        let possible = inside & t.gt(t_min) & t.lt(t_max) & t.le(V::load(&self.t[group]));
+        let possible = inside & t.gt(t_min) & t.lt(t_max) & t.le(self.t.group(group));
         if V::bits(possible) == 0 {
             return;
         }
@@ -244,26 +241,21 @@ impl Packet {
     /// far.
     #[inline(always)]
     fn take<V: Lanes>(&mut self, [t, b1, b2]: [V; 3], met: V::Mask, primitive: u32, group: usize) {
-        let best = V::load(&self.t[group]);
+        let best = self.t.group::<V>(group);
         let better = met & t.lt(best);
         let equal = V::bits(met & t.eq(best));
-        let keep = |old: &mut [f32; LANES], new: V| {
-            V::select(better, new, V::load(old)).store(old);
+        let keep = |old: &mut PerRay, new: V| {
+            old.set_group(group, V::select(better, new, old.group(group)));
         };
-        let limit = V::load(&self.limit[group]);
-        keep(&mut self.limit[group], t.min(limit));
-        keep(&mut self.t[group], t);
-        keep(&mut self.b1[group], b1);
-        keep(&mut self.b2[group], b2);
-        keep(
-            &mut self.primitive[group],
-            V::splat(f32::from_bits(primitive)),
-        );
+        let limit = self.limit.group::<V>(group);
+        keep(&mut self.limit, t.min(limit));
+        keep(&mut self.t, t);
+        keep(&mut self.b1, b1);
+        keep(&mut self.b2, b2);
+        keep(&mut self.primitive, V::splat(f32::from_bits(primitive)));
         if equal != 0 {
-            let (mut first, mut second) = ([0.0; LANES], [0.0; LANES]);
-            b1.store(&mut first);
-            b2.store(&mut second);
-            self.take_equal(group, equal, primitive, [first, second]);
+            let first = V::N * group;
+            self.take_equal((first, equal), primitive, [b1.to_array(), b2.to_array()]);
         }
     }
 
@@ -271,17 +263,17 @@ impl Packet {
     #[cold]
     fn take_equal(
         &mut self,
-        group: usize,
-        lanes: u32,
+        (first, lanes): (usize, u32),
         primitive: u32,
-        [b1, b2]: [[f32; LANES]; 2],
+        [b1, b2]: [[f32; ROW]; 2],
     ) {
         for lane in set_bits(lanes) {
-            let best = &mut self.primitive[group][lane];
+            let i = first + lane;
+            let best = self.primitive.of_ray_mut(i);
             if primitive < best.to_bits() {
                 *best = f32::from_bits(primitive);
-                self.b1[group][lane] = b1[lane];
-                self.b2[group][lane] = b2[lane];
+                *self.b1.of_ray_mut(i) = b1[lane];
+                *self.b2.of_ray_mut(i) = b2[lane];
             }
         }
     }
@@ -289,7 +281,7 @@ impl Packet {
     /// The query of ray `i` by itself.
     #[inline(always)]
     pub(super) fn query(&self, i: usize) -> Query {
-        let at = |values: &PerRay| of_ray(values, i);
+        let at = |values: &PerRay| values.of_ray(i);
         let hit = Hit {
             t: at(&self.t),
             primitive: at(&self.primitive).to_bits(),
@@ -306,17 +298,17 @@ impl Packet {
     #[inline(always)]
     pub(super) fn put(&mut self, rays: &PacketRays, i: usize, query: &Query) {
         let (hit, end) = (&query.hit, rays.t_max_of(i));
-        *of_ray_mut(&mut self.limit, i) = if hit.t < end { hit.t } else { end };
-        *of_ray_mut(&mut self.t, i) = hit.t;
-        *of_ray_mut(&mut self.b1, i) = hit.b1;
-        *of_ray_mut(&mut self.b2, i) = hit.b2;
-        *of_ray_mut(&mut self.primitive, i) = f32::from_bits(hit.primitive);
+        *self.limit.of_ray_mut(i) = if hit.t < end { hit.t } else { end };
+        *self.t.of_ray_mut(i) = hit.t;
+        *self.b1.of_ray_mut(i) = hit.b1;
+        *self.b2.of_ray_mut(i) = hit.b2;
+        *self.primitive.of_ray_mut(i) = f32::from_bits(hit.primitive);
     }
 
     /// Lets ray `i` want nothing more.
     #[inline(always)]
     pub(super) fn drop_ray(&mut self, i: usize) {
-        *of_ray_mut(&mut self.limit, i) = f32::NEG_INFINITY;
+        *self.limit.of_ray_mut(i) = f32::NEG_INFINITY;
     }
 
     /// Does something with ray `i` by itself.

@@ -2,8 +2,8 @@ use glam::Vec4;
 
 use super::block::Block;
 use super::leaf::{LeafOrder, Query};
-use super::packet::{Corners, LANES, Packet, Planes};
-use crate::bvh::{BLOCK, GROUPS, PacketLeaves, PacketRays, PerRay};
+use super::packet::{Corners, Packet, Planes};
+use crate::bvh::{BLOCK, PacketLeaves, PacketRays, PerRay, groups};
 use crate::math::{Lanes, Ray, set_bits};
 
 impl PacketLeaves for LeafOrder {
@@ -79,8 +79,8 @@ impl Packet {
         }
         let mut planes = None;
         for triangle in 0..block.len() {
-            for group in 0..GROUPS {
-                if active >> (LANES * group) & 0xff == 0 {
+            for group in 0..groups::<V>() {
+                if active >> (V::N * group) & V::ALL == 0 {
                     continue;
                 }
                 let edges = self.edges::<V, SHARED>(rays.1, &corners, (triangle, group));
@@ -94,7 +94,7 @@ impl Packet {
                 // One of zero may be a rounding; where the others differ in sign it does not matter.
                 let on_edge = inside & (edges.u.eq(zero) | edges.v.eq(zero) | edges.w.eq(zero));
                 if V::bits(on_edge) != 0 {
-                    self.on_edge(rays, block, (triangle, group), V::bits(on_edge));
+                    self.on_edge(rays, (block, triangle), (V::N * group, V::bits(on_edge)));
                 }
                 let inside = V::without(inside, on_edge);
                 // Not `get_or_insert_with`, which is not inlined.
@@ -109,18 +109,17 @@ impl Packet {
         }
     }
 
-    /// The rays in `lanes` of a group, one at a time with exact edge functions.
+    /// The rays in `lanes` from the `first` on, one at a time with exact edge functions.
     #[cold]
     #[inline(never)]
     fn on_edge(
         &mut self,
         rays: (&[Ray], &PacketRays),
-        block: &Block,
-        (triangle, group): (usize, usize),
-        lanes: u32,
+        (block, triangle): (&Block, usize),
+        (first, lanes): (usize, u32),
     ) {
         for lane in set_bits(lanes) {
-            self.alone(rays, LANES * group + lane, |query, ray| {
+            self.alone(rays, first + lane, |query, ray| {
                 query.triangles_on_edges(ray, block, 1 << triangle);
             });
         }

@@ -11,8 +11,8 @@ pub enum Isa {
     Portable,
     /// AVX2 with fused multiply-add and bit manipulation (x86-64-v3).
     Avx2,
-    /// AVX-512 (F, BW, CD, DQ, VL; x86-64-v4): sixteen numbers at once in shading and in small scenes,
-    /// [`Self::Avx2`] elsewhere.
+    /// AVX-512 (F, BW, CD, DQ, VL; x86-64-v4): sixteen numbers at once in shading, in small scenes and
+    /// for camera rays, eight for other rays.
     Avx512,
 }
 

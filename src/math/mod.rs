@@ -14,9 +14,9 @@ pub use aabb::Aabb;
 pub use bits::set_bits;
 pub use frame::Frame;
 pub use isa::{Isa, IsaError};
-#[cfg(target_arch = "x86_64")]
-pub(crate) use lanes::Avx2Lanes;
 pub(crate) use lanes::PortableLanes;
+#[cfg(target_arch = "x86_64")]
+pub(crate) use lanes::{Avx2Lanes, Avx512Lanes};
 pub use lanes::{
     DoubleLanes, FrameLanes, IntLanes, LANES, LaneKernel, Lanes, ROW, Vec3Array, Vec3Lanes,
     offset_origin_lanes, run_lanes,

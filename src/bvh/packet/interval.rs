@@ -1,7 +1,7 @@
 use super::super::node::{WIDTH, WideNode};
 use super::super::slab::FAR_MARGIN;
-use super::rays::{PacketRays, PerRay};
-use crate::math::{LANES, Lanes};
+use super::rays::{PacketRays, PerRay, groups};
+use crate::math::Lanes;
 
 /// What bounds all rays of a packet.
 #[derive(Clone, Copy, Debug)]
@@ -86,9 +86,9 @@ fn ends<V: Lanes>(values: &PerRay) -> (f32, f32) {
 /// The least number.
 #[inline(always)]
 fn least<V: Lanes>(values: &PerRay) -> f32 {
-    let mut lanes = V::load(&values[0]);
-    for group in &values[1..] {
-        lanes = lanes.min(V::load(group));
+    let mut lanes = values.group::<V>(0);
+    for group in 1..groups::<V>() {
+        lanes = lanes.min(values.group(group));
     }
     fold(lanes, |a, b| if b < a { b } else { a })
 }
@@ -96,22 +96,22 @@ fn least<V: Lanes>(values: &PerRay) -> f32 {
 /// The largest number.
 #[inline(always)]
 pub(super) fn largest<V: Lanes>(values: &PerRay) -> f32 {
-    let mut lanes = V::load(&values[0]);
-    for group in &values[1..] {
-        lanes = lanes.max(V::load(group));
+    let mut lanes = values.group::<V>(0);
+    for group in 1..groups::<V>() {
+        lanes = lanes.max(values.group(group));
     }
     fold(lanes, |a, b| if b > a { b } else { a })
 }
 
 #[inline(always)]
 fn fold<V: Lanes>(values: V, better: impl Fn(f32, f32) -> f32) -> f32 {
-    let mut v = [0.0; LANES];
-    values.store(&mut v);
-    let four = [
-        better(v[0], v[4]),
-        better(v[1], v[5]),
-        better(v[2], v[6]),
-        better(v[3], v[7]),
-    ];
-    better(better(four[0], four[2]), better(four[1], four[3]))
+    let mut all = values.to_array();
+    let mut half = V::N / 2;
+    while half > 0 {
+        for i in 0..half {
+            all[i] = better(all[i], all[i + half]);
+        }
+        half /= 2;
+    }
+    all[0]
 }

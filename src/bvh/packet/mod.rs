@@ -9,7 +9,7 @@ mod pending;
 mod pool;
 mod rays;
 
-pub use rays::{GROUPS, PACKET, PacketRays, PerRay, of_ray, of_ray_mut};
+pub use rays::{PACKET, PacketRays, PerRay, groups};
 
 use super::flight::Lane;
 use super::leaves::{PacketLeaves, Work};
@@ -18,7 +18,7 @@ use super::node::LEAF;
 use super::simd::{Kernel, NodeTest};
 use super::tree::Bvh;
 use crate::math::Ray;
-use interval::Interval;
+use interval::{Interval, largest};
 use pending::Pending;
 use pool::{Pool, take};
 
@@ -151,6 +151,7 @@ impl<L: PacketLeaves, F: FnMut(usize, Option<&L::Query>), const STACK: usize>
         room.pending.references[0] = 0;
         room.pending.near[0] = room.rays.t_min;
         let mut top = 1;
+        let mut most = largest::<N::Rays>(L::limit(&room.packet));
         while top > 0 {
             top -= 1;
             let limit = L::limit(&room.packet);
@@ -170,12 +171,12 @@ impl<L: PacketLeaves, F: FnMut(usize, Option<&L::Query>), const STACK: usize>
                 room.work.nodes += u64::from(count);
                 let (node, pending) = (&self.bvh.nodes()[at as usize], &mut room.pending);
                 let memory = &room.memory;
-                let packet = (&room.rays, &interval, limit, active);
+                let packet = (&room.rays, &interval, (limit, most));
                 let found = |child| memory.fetch(child);
                 top = if shared {
-                    pending.open::<N::Rays, true>(top, node, packet, found)
+                    pending.open::<N, true>(top, node, packet, found)
                 } else {
-                    pending.open::<N::Rays, false>(top, node, packet, found)
+                    pending.open::<N, false>(top, node, packet, found)
                 };
             } else {
                 let rays = (&self.rays[first..first + PACKET], &room.rays);
@@ -188,6 +189,7 @@ impl<L: PacketLeaves, F: FnMut(usize, Option<&L::Query>), const STACK: usize>
                         .visit_packet::<N::Rays, false>(block, rays, packet, active)
                 };
                 room.work.blocks += blocks * u64::from(count);
+                most = largest::<N::Rays>(L::limit(packet));
             }
         }
         let mut wanted = u64::from(wanted);
@@ -208,7 +210,7 @@ impl<L: PacketLeaves, F: FnMut(usize, Option<&L::Query>), const STACK: usize>
     ) -> Lane<L::Query> {
         Lane {
             slab: room.rays.slab(i),
-            limit: of_ray(L::limit(&room.packet), i),
+            limit: L::limit(&room.packet).of_ray(i),
             at,
             top: 0,
             ray: (first + i) as u32,
@@ -242,7 +244,7 @@ impl<L: PacketLeaves, F: FnMut(usize, Option<&L::Query>), const STACK: usize>
             room.pool.add(lane, |stacks, bottom| {
                 let entries = pending.references[..top].iter().zip(&pending.near);
                 entries.fold(bottom, |to, (&reference, near)| {
-                    let near = of_ray(near, i);
+                    let near = near.of_ray(i);
                     stacks.put(to, (reference, near), lane.limit)
                 })
             });

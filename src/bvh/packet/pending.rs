@@ -1,9 +1,10 @@
 use super::super::node::{WIDTH, WideNode};
 use super::super::octant::FAR_TO_NEAR;
+use super::super::simd::NodeTest;
 use super::super::slab::FAR_MARGIN;
-use super::interval::{Interval, Planes, largest};
-use super::rays::{GROUPS, PacketRays, PerRay};
-use crate::math::{LANES, Lanes};
+use super::interval::{Interval, Planes};
+use super::rays::{PacketRays, PerRay, groups};
+use crate::math::Lanes;
 
 /// What a packet has still to visit, the nearest last.
 #[derive(Debug)]
@@ -21,7 +22,7 @@ impl Pending {
         let size = (WIDTH - 1) * depth + 2;
         Self {
             references: vec![0; size],
-            near: vec![[[0.0; LANES]; GROUPS]; size],
+            near: vec![PerRay::splat(0.0); size],
         }
     }
 
@@ -30,42 +31,38 @@ impl Pending {
     pub(super) fn active<V: Lanes>(&self, limit: &PerRay, top: usize) -> u32 {
         let near = &self.near[top];
         let mut active = 0;
-        for group in 0..GROUPS {
+        for group in 0..groups::<V>() {
             // Equality stays in: a hit at the same parameter may have the smaller id.
-            let wants = V::load(&near[group]).le(V::load(&limit[group]));
-            active |= V::bits(wants) << (LANES * group);
+            let wants = near.group::<V>(group).le(limit.group(group));
+            active |= V::bits(wants) << (V::N * group);
         }
         active
     }
 
-    /// Puts the children of `node` that some ray in `active` meets before its `limit` at `top`, the
-    /// nearest last, and names each to `found`. Returns the new top.
+    /// Puts the children of `node` that some ray meets before its `limit`, of which `most` is the
+    /// largest or more, at `top`, the nearest last, and names each to `found`. Returns the new top.
     #[inline(always)]
-    pub(super) fn open<V: Lanes, const SHARED: bool>(
+    pub(super) fn open<N: NodeTest, const SHARED: bool>(
         &mut self,
         mut top: usize,
         node: &WideNode,
-        (rays, interval, limit, active): (&PacketRays, &Interval, &PerRay, u32),
+        (rays, interval, (limit, most)): (&PacketRays, &Interval, (&PerRay, f32)),
         found: impl Fn(u32),
     ) -> usize {
         let mut planes: Planes = [[[0.0; WIDTH]; 2]; 3];
-        let most = largest::<V>(limit);
-        let (near, met) = interval.enter::<V, SHARED>(node, rays.octant, most, &mut planes);
+        let (near, met) = interval.enter::<N::Eight, SHARED>(node, rays.octant, most, &mut planes);
         let count = met.count_ones() as usize;
         let order = FAR_TO_NEAR[rays.octant as usize % 8][met as usize % (1 << WIDTH)];
         for &slot in &far_to_near(order, count, near)[..count] {
             let slot = slot as usize % WIDTH;
             let entry = &mut self.near[top];
             let mut any = 0;
-            for group in 0..GROUPS {
-                if active >> (LANES * group) & 0xff == 0 {
-                    entry[group] = [f32::INFINITY; LANES];
-                    continue;
-                }
-                let limit = V::load(&limit[group]);
-                let (near, meets) = enter::<V, SHARED>(rays, &planes, (slot, group), limit);
-                any |= V::bits(meets);
-                V::select(meets, near, V::splat(f32::INFINITY)).store(&mut entry[group]);
+            for group in 0..groups::<N::Rays>() {
+                let limit = limit.group::<N::Rays>(group);
+                let (near, meets) = enter::<N::Rays, SHARED>(rays, &planes, (slot, group), limit);
+                any |= N::Rays::bits(meets);
+                let nowhere = N::Rays::splat(f32::INFINITY);
+                entry.set_group(group, N::Rays::select(meets, near, nowhere));
             }
             self.references[top] = node.children[slot];
             found(node.children[slot]);

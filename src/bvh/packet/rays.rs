@@ -1,26 +1,58 @@
 use super::super::slab::{FAR_MARGIN, SlabRay, T_FAR, can_meet, inverse};
 use super::super::tree::BLOCK;
-use crate::math::{LANES, Lanes, Ray};
-
-/// Groups of eight rays in a packet.
-pub const GROUPS: usize = 4;
+use crate::math::{LANES, Lanes, ROW, Ray};
 
 /// Rays in a packet.
-pub const PACKET: usize = GROUPS * LANES;
+pub const PACKET: usize = 32;
 
 /// A number for each ray of a packet.
-pub type PerRay = [[f32; LANES]; GROUPS];
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub struct PerRay([[f32; ROW]; PACKET / ROW]);
 
-/// The number of ray `i`.
-#[inline(always)]
-pub fn of_ray(values: &PerRay, i: usize) -> f32 {
-    values.as_flattened()[i % PACKET]
+impl PerRay {
+    /// The same number for all rays.
+    pub const fn splat(value: f32) -> Self {
+        Self([[value; ROW]; PACKET / ROW])
+    }
+
+    /// The number of ray `i`.
+    #[inline(always)]
+    pub fn of_ray(&self, i: usize) -> f32 {
+        self.0.as_flattened()[i % PACKET]
+    }
+
+    /// The place of the number of ray `i`.
+    #[inline(always)]
+    pub fn of_ray_mut(&mut self, i: usize) -> &mut f32 {
+        &mut self.0.as_flattened_mut()[i % PACKET]
+    }
+
+    /// The numbers of a group: as many rays as there are lanes.
+    #[inline(always)]
+    pub fn group<V: Lanes>(&self, group: usize) -> V {
+        if V::N == ROW {
+            return V::load_row(&self.0[group % (PACKET / ROW)]);
+        }
+        let (halves, _) = self.0.as_flattened().as_chunks();
+        V::load(&halves[group % (PACKET / LANES)])
+    }
+
+    /// Writes the numbers of a group.
+    #[inline(always)]
+    pub fn set_group<V: Lanes>(&mut self, group: usize, values: V) {
+        if V::N == ROW {
+            return values.store_row(&mut self.0[group % (PACKET / ROW)]);
+        }
+        let (halves, _) = self.0.as_flattened_mut().as_chunks_mut();
+        values.store(&mut halves[group % (PACKET / LANES)]);
+    }
 }
 
-/// The place of the number of ray `i`.
+/// Groups in a packet.
 #[inline(always)]
-pub fn of_ray_mut(values: &mut PerRay, i: usize) -> &mut f32 {
-    &mut values.as_flattened_mut()[i % PACKET]
+pub const fn groups<V: Lanes>() -> usize {
+    PACKET / V::N
 }
 
 /// The rays of a packet side by side, prepared for box tests: all valid, all in one octant. The
@@ -43,11 +75,11 @@ pub struct PacketRays {
 impl PacketRays {
     /// Room for a packet.
     pub(super) const EMPTY: Self = Self {
-        origin: [[[0.0; LANES]; GROUPS]; 3],
-        direction: [[[0.0; LANES]; GROUPS]; 3],
-        inverse: [[[0.0; LANES]; GROUPS]; 3],
-        t_min: [[0.0; LANES]; GROUPS],
-        t_max: [[0.0; LANES]; GROUPS],
+        origin: [PerRay::splat(0.0); 3],
+        direction: [PerRay::splat(0.0); 3],
+        inverse: [PerRay::splat(0.0); 3],
+        t_min: PerRay::splat(0.0),
+        t_max: PerRay::splat(0.0),
         octant: 0,
     };
 
@@ -56,15 +88,19 @@ impl PacketRays {
     #[inline(always)]
     pub(super) fn set<V: Lanes>(&mut self, rays: &[Ray; PACKET]) -> bool {
         let mut is_valid = true;
-        let mut negative = [[0; 3]; GROUPS];
-        for (group, negative) in negative.iter_mut().enumerate() {
-            let numbers = V::of_first_rays(&rays[group * LANES..]);
-            is_valid &= self.prepare::<V>(group, numbers, negative);
+        let mut is_one = true;
+        let mut signs = [0; 3];
+        for group in 0..groups::<V>() {
+            let numbers = V::of_first_rays(&rays[group * V::N..]);
+            let mut negative = [0; 3];
+            is_valid &= self.prepare::<V>(group, numbers, &mut negative);
+            if group == 0 {
+                signs = [negative[0] & 1, negative[1] & 1, negative[2] & 1];
+            }
+            is_one &= negative == [signs[0] * V::ALL, signs[1] * V::ALL, signs[2] * V::ALL];
         }
-        let first = [negative[0][0] & 1, negative[0][1] & 1, negative[0][2] & 1];
-        self.octant = first[0] | first[1] << 1 | first[2] << 2;
-        let all = [first[0] * 0xff, first[1] * 0xff, first[2] * 0xff];
-        is_valid && negative.iter().all(|negative| *negative == all)
+        self.octant = signs[0] | signs[1] << 1 | signs[2] << 2;
+        is_valid && is_one
     }
 
     /// Takes in the numbers of the rays of one group, and makes what [`SlabRay::new`] makes of them; a
@@ -79,16 +115,16 @@ impl PacketRays {
     ) -> bool {
         let zero = V::splat(0.0);
         let (origin, direction) = ([ox, oy, oz], [dx, dy, dz]);
-        let is_valid = V::bits(can_meet(origin, direction, [t_min, t_max])) == 0xff;
+        let is_valid = V::bits(can_meet(origin, direction, [t_min, t_max])) == V::ALL;
         for (axis, negative) in negative.iter_mut().enumerate() {
             let direction = direction[axis] + zero;
-            origin[axis].store(&mut self.origin[axis][group]);
-            direction.store(&mut self.direction[axis][group]);
-            inverse(direction).store(&mut self.inverse[axis][group]);
+            self.origin[axis].set_group(group, origin[axis]);
+            self.direction[axis].set_group(group, direction);
+            self.inverse[axis].set_group(group, inverse(direction));
             *negative = V::bits(direction.lt(zero));
         }
-        t_min.store(&mut self.t_min[group]);
-        t_max.min(V::splat(T_FAR)).store(&mut self.t_max[group]);
+        self.t_min.set_group(group, t_min);
+        self.t_max.set_group(group, t_max.min(V::splat(T_FAR)));
         is_valid
     }
 
@@ -97,18 +133,18 @@ impl PacketRays {
     pub(super) fn share_origin<V: Lanes>(&self) -> bool {
         let mut same = V::splat(0.0).eq(V::splat(0.0));
         for axis in 0..3 {
-            let first = V::splat(self.origin[axis][0][0]);
-            for group in 0..GROUPS {
+            let first = V::splat(self.first_origin(axis));
+            for group in 0..groups::<V>() {
                 same = same & first.eq(self.origin(axis, group));
             }
         }
-        V::bits(same) == 0xff
+        V::bits(same) == V::ALL
     }
 
     /// Ray `i` by itself.
     #[inline(always)]
     pub fn slab(&self, i: usize) -> SlabRay {
-        let at = |values: &PerRay| of_ray(values, i);
+        let at = |values: &PerRay| values.of_ray(i);
         SlabRay {
             origin: [
                 at(&self.origin[0]),
@@ -130,43 +166,43 @@ impl PacketRays {
     /// Coordinate `axis` of the origin of the first ray.
     #[inline(always)]
     pub fn first_origin(&self, axis: usize) -> f32 {
-        self.origin[axis][0][0]
+        self.origin[axis].of_ray(0)
     }
 
     /// Coordinate `axis` of the origins of a group.
     #[inline(always)]
     pub fn origin<V: Lanes>(&self, axis: usize, group: usize) -> V {
-        V::load(&self.origin[axis][group])
+        self.origin[axis].group(group)
     }
 
     /// Component `axis` of the directions of a group, with +0 for −0.
     #[inline(always)]
     pub fn direction<V: Lanes>(&self, axis: usize, group: usize) -> V {
-        V::load(&self.direction[axis][group])
+        self.direction[axis].group(group)
     }
 
     /// One over the directions, as [`SlabRay::inverse_direction`].
     #[inline(always)]
     pub fn inverse<V: Lanes>(&self, axis: usize, group: usize) -> V {
-        V::load(&self.inverse[axis][group])
+        self.inverse[axis].group(group)
     }
 
     /// Starts of the valid intervals.
     #[inline(always)]
     pub fn t_min<V: Lanes>(&self, group: usize) -> V {
-        V::load(&self.t_min[group])
+        self.t_min.group(group)
     }
 
     /// Ends of the valid intervals, at most [`T_FAR`].
     #[inline(always)]
     pub fn t_max<V: Lanes>(&self, group: usize) -> V {
-        V::load(&self.t_max[group])
+        self.t_max.group(group)
     }
 
     /// End of the valid interval of ray `i`.
     #[inline(always)]
     pub fn t_max_of(&self, i: usize) -> f32 {
-        of_ray(&self.t_max, i)
+        self.t_max.of_ray(i)
     }
 
     /// [`SlabRay::enter`] for the rays of a group and one box, which must not be empty: minimum and

@@ -54,6 +54,8 @@ fn permutation(order: u64) -> __m256i {
 impl NodeTest for Avx2 {
     type PerSlot = __m256;
 
+    type Eight = Avx2Lanes;
+
     type Rays = Avx2Lanes;
 
     #[inline(always)]

@@ -3,6 +3,8 @@
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
+#[cfg(target_arch = "x86_64")]
+mod avx512;
 mod portable;
 mod prefetch;
 
@@ -17,7 +19,10 @@ pub(super) trait NodeTest {
     /// A number for each slot.
     type PerSlot: Copy;
 
-    /// A number for each of eight rays.
+    /// A number for each slot, or of eight rays, to calculate with.
+    type Eight: Lanes;
+
+    /// A number for each of some rays, as many as are fastest.
     type Rays: Lanes;
 
     /// Entry parameters of the boxes, and a bit for each slot whose box the ray meets before
@@ -51,7 +56,9 @@ pub(super) trait Kernel {
 pub(super) fn dispatch<K: Kernel>(isa: Isa, kernel: K) -> K::Answer {
     match isa {
         #[cfg(target_arch = "x86_64")]
-        Isa::Avx2 | Isa::Avx512 => avx2::with_avx2(kernel),
+        Isa::Avx512 => avx512::with_avx512(kernel),
+        #[cfg(target_arch = "x86_64")]
+        Isa::Avx2 => avx2::with_avx2(kernel),
         _ => {
             assert!(isa.is_available(), "this processor has no {isa}");
             kernel.run::<portable::Portable>()

@@ -12,6 +12,8 @@ pub(in super::super) struct Portable;
 impl NodeTest for Portable {
     type PerSlot = [f32; WIDTH];
 
+    type Eight = PortableLanes;
+
     type Rays = PortableLanes;
 
     #[inline(always)]

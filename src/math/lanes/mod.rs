@@ -32,6 +32,8 @@ mod vec3_array;
 
 #[cfg(target_arch = "x86_64")]
 pub(crate) use avx2::Avx2Lanes;
+#[cfg(target_arch = "x86_64")]
+pub(crate) use avx512::Avx512Lanes;
 pub use doubles::DoubleLanes;
 pub use floats::{LANES, Lanes, ROW};
 pub use ints::IntLanes;
