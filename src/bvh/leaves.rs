@@ -57,6 +57,15 @@ pub trait PacketLeaves: Leaves {
     fn of_packet(&self, packet: &Self::Packet, i: usize) -> Self::Query;
 }
 
+/// Takes the answers to rays that were traced in packets.
+pub trait PacketAnswers<L: PacketLeaves> {
+    /// The answer to ray `number`; `None` if the ray can meet nothing.
+    fn one(&mut self, number: usize, query: Option<&L::Query>);
+
+    /// The answers to all rays of a packet, of which the first has number `first`.
+    fn all(&mut self, first: usize, packet: &L::Packet);
+}
+
 /// Work done by traversal.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Work {

@@ -32,7 +32,7 @@ mod traverse;
 mod tree;
 
 pub use build::Progress;
-pub use leaves::{Leaves, PacketLeaves, Work};
+pub use leaves::{Leaves, PacketAnswers, PacketLeaves, Work};
 pub use packet::{PACKET, PacketRays, PerRay, groups};
 pub use settings::{BvhKind, BvhQuality, BvhSettings};
 pub use slab::{FAR_MARGIN, SlabRay, T_FAR, padded, padded_four};

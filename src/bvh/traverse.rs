@@ -1,4 +1,4 @@
-use super::leaves::{Leaves, PacketLeaves, Work};
+use super::leaves::{Leaves, PacketAnswers, PacketLeaves, Work};
 use super::packet::Packets;
 use super::simd::dispatch;
 use super::single::Single;
@@ -70,20 +70,20 @@ impl Bvh {
         isa: Isa,
         leaves: &L,
         rays: &[Ray],
-        mut answer: impl FnMut(usize, Option<&L::Query>),
+        answers: &mut impl PacketAnswers<L>,
     ) -> Work {
         if self.nodes().is_empty() {
-            return self.traverse::<false, L>(isa, leaves, rays, answer);
+            return self.traverse::<false, L>(isa, leaves, rays, |i, query| answers.one(i, query));
         }
         let mut rest = Vec::new();
         let work = if is_enough(SHALLOW, self.wide_depth()) {
-            self.packets::<SHALLOW, L>(isa, leaves, rays, (&mut answer, &mut rest))
+            self.packets::<SHALLOW, L>(isa, leaves, rays, (answers, &mut rest))
         } else {
-            self.packets::<DEEP, L>(isa, leaves, rays, (&mut answer, &mut rest))
+            self.packets::<DEEP, L>(isa, leaves, rays, (answers, &mut rest))
         };
         let single: Vec<_> = rest.iter().map(|&i| rays[i as usize]).collect();
         let more = self.traverse::<false, L>(isa, leaves, &single, |i, query| {
-            answer(rest[i] as usize, query);
+            answers.one(rest[i] as usize, query);
         });
         Work {
             nodes: work.nodes + more.nodes,
@@ -96,13 +96,13 @@ impl Bvh {
         isa: Isa,
         leaves: &L,
         rays: &[Ray],
-        (answer, rest): (impl FnMut(usize, Option<&L::Query>), &mut Vec<u32>),
+        (answers, rest): (&mut impl PacketAnswers<L>, &mut Vec<u32>),
     ) -> Work {
         let packets = Packets::<_, _, STACK> {
             bvh: self,
             leaves,
             rays,
-            answer,
+            answers,
             rest,
         };
         dispatch(isa, packets)

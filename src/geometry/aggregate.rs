@@ -2,7 +2,8 @@ use std::ops::{ControlFlow, Range};
 use std::sync::Arc;
 
 use super::block::ID_LIMIT;
-use super::leaf::{LeafOrder, Query, bounds};
+use super::leaf::{LeafOrder, bounds};
+use super::packet_leaf::PacketHits;
 use super::refine::{refine, refine_meshes};
 use super::sweep::Sweep;
 use super::{Hit, Instance, InstanceStats, Instances, Placement, Shapes};
@@ -268,10 +269,8 @@ impl Aggregate {
     pub fn closest_hit_coherent(&self, rays: &[Ray], hits: &mut [Hit], counts: &mut TraceCounts) {
         assert_eq!(rays.len(), hits.len());
         let (isa, leaves) = (self.isa, &*self.leaves);
-        let answer = |i: usize, query: Option<&Query>| {
-            hits[i] = query.map_or(Hit::MISS, |query| query.hit);
-        };
-        let work = self.bvh.traverse_coherent(isa, leaves, rays, answer);
+        let answers = &mut PacketHits(hits);
+        let work = self.bvh.traverse_coherent(isa, leaves, rays, answers);
         counts.add(rays.len(), work);
         if let Some(instances) = &self.instances {
             instances.closest_hit(isa, rays, hits, counts);

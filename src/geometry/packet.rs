@@ -294,6 +294,20 @@ impl Packet {
         )
     }
 
+    /// Writes the best hit of each ray.
+    #[inline(always)]
+    pub(super) fn write_hits(&self, hits: &mut [Hit]) {
+        let hits = hits.iter_mut().zip(self.t.all()).zip(self.primitive.all());
+        for (((hit, t), primitive), (b1, b2)) in hits.zip(self.b1.all().iter().zip(self.b2.all())) {
+            *hit = Hit {
+                t: *t,
+                primitive: primitive.to_bits(),
+                b1: *b1,
+                b2: *b2,
+            };
+        }
+    }
+
     /// Puts the best hit of ray `i` back.
     #[inline(always)]
     pub(super) fn put(&mut self, rays: &PacketRays, i: usize, query: &Query) {

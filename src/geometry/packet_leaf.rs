@@ -1,9 +1,10 @@
 use glam::Vec4;
 
+use super::Hit;
 use super::block::Block;
 use super::leaf::{LeafOrder, Query};
 use super::packet::{Corners, Packet, Planes};
-use crate::bvh::{BLOCK, PacketLeaves, PacketRays, PerRay, groups};
+use crate::bvh::{BLOCK, PACKET, PacketAnswers, PacketLeaves, PacketRays, PerRay, groups};
 use crate::math::{Lanes, Ray, set_bits};
 
 impl PacketLeaves for LeafOrder {
@@ -54,6 +55,21 @@ impl PacketLeaves for LeafOrder {
     #[inline(always)]
     fn of_packet(&self, packet: &Packet, i: usize) -> Query {
         packet.query(i)
+    }
+}
+
+/// The hits of rays that are traced in packets.
+pub(super) struct PacketHits<'a>(pub(super) &'a mut [Hit]);
+
+impl PacketAnswers<LeafOrder> for PacketHits<'_> {
+    #[inline(always)]
+    fn one(&mut self, number: usize, query: Option<&Query>) {
+        self.0[number] = query.map_or(Hit::MISS, |query| query.hit);
+    }
+
+    #[inline(always)]
+    fn all(&mut self, first: usize, packet: &Packet) {
+        packet.write_hits(&mut self.0[first..first + PACKET]);
     }
 }
 

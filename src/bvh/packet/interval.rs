@@ -19,15 +19,21 @@ pub(super) struct Interval {
 pub(super) type Planes = [[[f32; WIDTH]; 2]; 3];
 
 impl Interval {
+    /// Of `rays`, which start at one point if `shared`.
     #[inline(always)]
-    pub(super) fn new<V: Lanes>(rays: &PacketRays) -> Self {
+    pub(super) fn new<V: Lanes>(rays: &PacketRays, shared: bool) -> Self {
         let mut out = Self {
             origin: [[0.0; 2]; 3],
             inverse: [[0.0; 2]; 3],
             t_min: least::<V>(&rays.t_min),
         };
         for axis in 0..3 {
-            let (low, high) = ends::<V>(&rays.origin[axis]);
+            let first = rays.first_origin(axis);
+            let (low, high) = if shared {
+                (first, first)
+            } else {
+                ends::<V>(&rays.origin[axis])
+            };
             out.origin[axis] = if rays.octant >> axis & 1 == 0 {
                 [high, low]
             } else {

@@ -12,7 +12,7 @@ mod rays;
 pub use rays::{PACKET, PacketRays, PerRay, groups};
 
 use super::flight::Lane;
-use super::leaves::{PacketLeaves, Work};
+use super::leaves::{PacketAnswers, PacketLeaves, Work};
 use super::memory::Memory;
 use super::node::LEAF;
 use super::simd::{Kernel, NodeTest};
@@ -34,12 +34,11 @@ const ALL: u32 = u32::MAX >> (32 - PACKET);
 
 /// Traces packets one after the other.
 #[derive(Debug)]
-pub(super) struct Packets<'a, L, F, const STACK: usize> {
+pub(super) struct Packets<'a, L, A, const STACK: usize> {
     pub(super) bvh: &'a Bvh,
     pub(super) leaves: &'a L,
     pub(super) rays: &'a [Ray],
-    /// Takes the number of a ray and its answer.
-    pub(super) answer: F,
+    pub(super) answers: &'a mut A,
     /// Gets the numbers of the rays that make no packet.
     pub(super) rest: &'a mut Vec<u32>,
 }
@@ -54,9 +53,7 @@ struct Room<Q, P, const STACK: usize> {
     work: Work,
 }
 
-impl<L: PacketLeaves, F: FnMut(usize, Option<&L::Query>), const STACK: usize> Kernel
-    for Packets<'_, L, F, STACK>
-{
+impl<L: PacketLeaves, A: PacketAnswers<L>, const STACK: usize> Kernel for Packets<'_, L, A, STACK> {
     type Answer = Work;
 
     #[inline(always)]
@@ -92,9 +89,7 @@ impl<L: PacketLeaves, F: FnMut(usize, Option<&L::Query>), const STACK: usize> Ke
     }
 }
 
-impl<L: PacketLeaves, F: FnMut(usize, Option<&L::Query>), const STACK: usize>
-    Packets<'_, L, F, STACK>
-{
+impl<L: PacketLeaves, A: PacketAnswers<L>, const STACK: usize> Packets<'_, L, A, STACK> {
     /// Makes a packet of `rays`; false if they cannot be one.
     #[inline(always)]
     fn prepare<N: NodeTest>(
@@ -147,7 +142,7 @@ impl<L: PacketLeaves, F: FnMut(usize, Option<&L::Query>), const STACK: usize>
         room: &mut Room<L::Query, L::Packet, STACK>,
     ) {
         let shared = room.rays.share_origin::<N::Rays>();
-        let interval = Interval::new::<N::Rays>(&room.rays);
+        let interval = Interval::new::<N::Rays>(&room.rays, shared);
         room.pending.references[0] = 0;
         room.pending.near[0] = room.rays.t_min;
         let mut top = 1;
@@ -192,10 +187,14 @@ impl<L: PacketLeaves, F: FnMut(usize, Option<&L::Query>), const STACK: usize>
                 most = largest::<N::Rays>(L::limit(packet));
             }
         }
+        if wanted == ALL {
+            return self.answers.all(first, &room.packet);
+        }
         let mut wanted = u64::from(wanted);
         while wanted != 0 {
             let i = take(&mut wanted);
-            (self.answer)(first + i, Some(&self.leaves.of_packet(&room.packet, i)));
+            let query = self.leaves.of_packet(&room.packet, i);
+            self.answers.one(first + i, Some(&query));
         }
     }
 
@@ -261,7 +260,7 @@ impl<L: PacketLeaves, F: FnMut(usize, Option<&L::Query>), const STACK: usize>
         let mut done = pool.run::<N, L>(set, tree, self.rays, work);
         while done != 0 {
             let lane = pool.remove(take(&mut done));
-            (self.answer)(lane.ray as usize, Some(&lane.query));
+            self.answers.one(lane.ray as usize, Some(&lane.query));
         }
     }
 }

@@ -16,6 +16,12 @@ impl PerRay {
         Self([[value; ROW]; PACKET / ROW])
     }
 
+    /// The numbers of all rays.
+    #[inline(always)]
+    pub fn all(&self) -> &[f32] {
+        self.0.as_flattened()
+    }
+
     /// The number of ray `i`.
     #[inline(always)]
     pub fn of_ray(&self, i: usize) -> f32 {
