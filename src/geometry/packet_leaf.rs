@@ -94,17 +94,19 @@ impl Packet {
             }
         }
         let mut planes = None;
-        for triangle in 0..block.len() {
-            for group in 0..groups::<V>() {
-                if active >> (V::N * group) & V::ALL == 0 {
-                    continue;
-                }
+        let len = block.len();
+        for group in 0..groups::<V>() {
+            let active = active >> (V::N * group) & V::ALL;
+            if active == 0 {
+                continue;
+            }
+            for triangle in 0..len {
                 let edges = self.edges::<V, SHARED>(rays.1, &corners, (triangle, group));
                 let zero = V::splat(0.0);
                 let least = edges.u.min(edges.v).min(edges.w);
                 let most = edges.u.max(edges.v).max(edges.w);
                 let inside = least.ge(zero) | most.le(zero);
-                if V::bits(inside) == 0 {
+                if V::bits(inside) & active == 0 {
                     continue;
                 }
                 // One of zero may be a rounding; where the others differ in sign it does not matter.
