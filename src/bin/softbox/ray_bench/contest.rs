@@ -1,7 +1,7 @@
 use std::ops::Range;
 use std::sync::{Barrier, Mutex};
-use std::thread;
 
+use rayon::ThreadPool;
 use softbox::bvh::BvhSettings;
 use softbox::geometry::{Aggregate, Hit, Shapes};
 use softbox::math::Isa;
@@ -9,6 +9,7 @@ use softbox::math::Isa;
 use super::clock::{Taken, of_process, of_thread};
 use super::rays::{Kind, RaySet, ray_sets};
 use super::result::{BuildResult, Mismatches, RaysResult, SceneResult};
+use super::system::pool_of;
 use super::{Exact, Protocol, Subject, System, Tracer, median};
 
 /// Rays that a thread takes at once, as a render does.
@@ -104,16 +105,18 @@ fn anchor<'a>(mut names: impl Iterator<Item = &'a str>) -> Option<usize> {
 
 fn trace(set: &RaySet, systems: &[(&str, &dyn Tracer)], protocol: &Protocol) -> Vec<RaysResult> {
     let mut hits = Hits::new(set);
+    let alone = pool_of(1);
     // A first run, not timed but for whether it is long, fills the caches and is checked.
     let first: Vec<(Mismatches, bool)> = systems
         .iter()
         .map(|(_, tracer)| {
-            let taken = hits.trace(set, 0..set.rays.len(), *tracer, 1);
+            let taken = hits.trace(set, 0..set.rays.len(), *tracer, &alone);
             (hits.mismatches(set), taken.wall > LONG_RUN)
         })
         .collect();
     let mut results = Vec::new();
     for &threads in &protocol.threads {
+        let pool = pool_of(threads);
         let mut rates = vec![Vec::new(); systems.len()];
         let mut walls = vec![Vec::new(); systems.len()];
         for round in 0..protocol.rounds {
@@ -122,7 +125,7 @@ fn trace(set: &RaySet, systems: &[(&str, &dyn Tracer)], protocol: &Protocol) -> 
                 let part = from..(from + PART).min(set.rays.len());
                 for (i, (_, tracer)) in systems.iter().enumerate() {
                     if round == 0 || !first[i].1 {
-                        taken[i] += hits.trace(set, part.clone(), *tracer, threads);
+                        taken[i] += hits.trace(set, part.clone(), *tracer, &pool);
                     }
                 }
             }
@@ -171,15 +174,15 @@ impl Hits {
         set: &RaySet,
         part: Range<usize>,
         tracer: &dyn Tracer,
-        threads: usize,
+        pool: &ThreadPool,
     ) -> Taken {
         let batches = set.rays[part.clone()].chunks(BATCH);
         if set.kind.is_shadow() {
             let work = batches.zip(self.occluded[part].chunks_mut(BATCH));
-            run(work, threads, |(rays, out)| tracer.any_hit(rays, out))
+            run(work, pool, |(rays, out)| tracer.any_hit(rays, out))
         } else {
             let work = batches.zip(self.closest[part].chunks_mut(BATCH));
-            run(work, threads, |(rays, out)| {
+            run(work, pool, |(rays, out)| {
                 if set.kind == Kind::Primary {
                     tracer.primary_hit(rays, out);
                 } else {
@@ -198,26 +201,24 @@ impl Hits {
     }
 }
 
-/// Lets `threads` threads take batches until none are left; the processor time is that of all of them.
+/// Lets the threads of `pool` take batches until none are left; the processor time is that of all of
+/// them. The threads stay from one part to the next, as those of a render do: a new one would have to
+/// fetch its stack page by page.
 fn run<B: Send>(
     batches: impl Iterator<Item = B> + Send,
-    threads: usize,
+    pool: &ThreadPool,
     trace: impl Fn(B) + Sync,
 ) -> Taken {
     let queue = Mutex::new(batches);
     let next = || queue.lock().expect("no thread panics with the lock").next();
-    let start = Barrier::new(threads);
+    let start = Barrier::new(pool.current_num_threads());
     let work = || {
         start.wait();
         of_thread(|| std::iter::from_fn(next).for_each(&trace)).1
     };
     let (all, taken) = of_process(|| {
-        thread::scope(|scope| {
-            let workers: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
-            let all = workers.into_iter().map(|worker| worker.join());
-            all.map(|taken| taken.expect("tracing does not panic").processor)
-                .sum()
-        })
+        let all = pool.broadcast(|_| work());
+        all.iter().map(|taken| taken.processor).sum()
     });
     Taken {
         processor: all,

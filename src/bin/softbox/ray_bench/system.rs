@@ -2,7 +2,7 @@ use std::fmt;
 use std::ops::ControlFlow;
 
 use clap::ValueEnum;
-use rayon::ThreadPoolBuilder;
+use rayon::{ThreadPool, ThreadPoolBuilder};
 use softbox::bvh::{BvhQuality, BvhSettings};
 use softbox::geometry::{Aggregate, Hit, Shapes, TraceCounts};
 use softbox::math::{Isa, Ray};
@@ -96,15 +96,18 @@ pub(crate) fn ours(isa: Isa) -> Vec<System> {
     ]
 }
 
+/// So many threads.
+pub(super) fn pool_of(threads: usize) -> ThreadPool {
+    let pool = ThreadPoolBuilder::new().num_threads(threads).build();
+    pool.expect("the system gives threads")
+}
+
 /// `build` on a pool of so many threads, which is there before the clock starts.
 pub(crate) fn on_threads(
     threads: usize,
     build: impl FnOnce() -> Box<dyn Tracer> + Send + 'static,
 ) -> impl FnOnce() -> Box<dyn Tracer> {
-    let pool = ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .build()
-        .expect("the system gives threads");
+    let pool = pool_of(threads);
     move || pool.install(build)
 }
 
