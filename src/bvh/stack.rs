@@ -132,3 +132,57 @@ fn eight<T>(values: &mut [T], at: usize) -> &mut [T; WIDTH] {
         .try_into()
         .expect("eight of them")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::simd::{Kernel, dispatch};
+    use super::*;
+    use crate::math::Isa;
+
+    type Shallow = Stack<SHALLOW>;
+
+    /// Puts `entries` on a stack, drops those beyond `limit`, and takes off what is left.
+    struct Cull<'a> {
+        entries: &'a [(u32, f32)],
+        limit: f32,
+    }
+
+    impl Kernel for Cull<'_> {
+        type Answer = Vec<u32>;
+
+        fn run<N: NodeTest>(self) -> Vec<u32> {
+            let mut stack = Shallow::EMPTY;
+            let put = |top, &entry: &(u32, f32)| stack.put(top, entry, f32::INFINITY);
+            let top = self.entries.iter().fold(BOTTOM, put);
+            let top = stack.cull::<N>(top, self.limit);
+            let mut next = stack.pop(top);
+            let mut left = Vec::new();
+            while next.0 != DONE {
+                left.push(next.0);
+                next = stack.pop(next.1);
+            }
+            assert_eq!(next.1, 0, "the bottom is at 0");
+            left
+        }
+    }
+
+    #[test]
+    fn a_cull_leaves_what_begins_at_or_before_the_limit_in_its_order() {
+        for isa in Isa::available() {
+            for count in 0..100 {
+                let near = |i: u32| (i * 37 % 11) as f32;
+                let entries: Vec<_> = (0..count).map(|i| (i, near(i))).collect();
+                for limit in [-1.0, 0.0, 4.0, 4.5, 10.0] {
+                    let kept = entries.iter().rev().filter(|(_, near)| *near <= limit);
+                    let kept: Vec<_> = kept.map(|&(reference, _)| reference).collect();
+                    let entries = &entries[..];
+                    assert_eq!(
+                        dispatch(isa, Cull { entries, limit }),
+                        kept,
+                        "{isa} {count}"
+                    );
+                }
+            }
+        }
+    }
+}
