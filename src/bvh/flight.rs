@@ -4,7 +4,7 @@ use super::node::{LEAF, WideNode};
 use super::simd::NodeTest;
 use super::slab::SlabRay;
 use super::stack::{BOTTOM, DONE, Stack};
-use crate::math::Ray;
+use crate::math::{Ray, take_lowest};
 
 /// Rays in flight. Of 8, 16, 32 and 64 the fastest.
 const LANES: usize = 32;
@@ -52,9 +52,7 @@ pub(super) struct Flight<Q, const STACK: usize> {
 /// Takes a lane out of a set.
 #[inline(always)]
 pub(super) fn take_lane(set: &mut LaneSet) -> usize {
-    let lowest = set.trailing_zeros();
-    *set &= *set - 1;
-    (lowest / 2) as usize % LANES
+    take_lowest(set) / 2 % LANES
 }
 
 impl Arrivals {

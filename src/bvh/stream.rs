@@ -6,7 +6,7 @@ use super::simd::{Kernel, NodeTest};
 use super::slab::SlabRay;
 use super::stack::{BOTTOM, Stack};
 use super::tree::Bvh;
-use crate::math::Ray;
+use crate::math::{Ray, take_lowest};
 
 /// Many rays at once, a step each in turn, so that the memory that one ray waits for arrives while
 /// the others work.
@@ -28,15 +28,7 @@ struct Queue {
     first: usize,
     entrance: Entrance,
     /// A bit for each of them that goes on below the root.
-    waiting: u32,
-}
-
-/// Takes the number of the lowest bit out of a set.
-#[inline(always)]
-fn take(set: &mut u32) -> usize {
-    let lowest = set.trailing_zeros();
-    *set &= *set - 1;
-    lowest as usize
+    waiting: u64,
 }
 
 impl<L: Leaves, F: FnMut(usize, Option<&L::Query>), const ANY: bool, const STACK: usize>
@@ -72,14 +64,14 @@ impl<L: Leaves, F: FnMut(usize, Option<&L::Query>), const ANY: bool, const STACK
             let entrance = Entrance::new::<N::Eight>(&self.bvh.nodes()[0], rest);
             work.nodes += u64::from(entrance.valid().count_ones());
             queue.next += entrance.count();
-            (queue.first, queue.waiting) = (first, entrance.go_on());
-            let mut others = entrance.all() & !queue.waiting;
+            (queue.first, queue.waiting) = (first, u64::from(entrance.go_on()));
+            let mut others = u64::from(entrance.all()) & !queue.waiting;
             while others != 0 {
-                (self.answer)(first + take(&mut others), None);
+                (self.answer)(first + take_lowest(&mut others), None);
             }
             queue.entrance = entrance;
         }
-        let lane = take(&mut queue.waiting);
+        let lane = take_lowest(&mut queue.waiting);
         Some((queue.first + lane, queue.entrance.meets(lane)))
     }
 

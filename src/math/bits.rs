@@ -1,13 +1,16 @@
+/// Takes the lowest bit out of a set that is not empty; returns its number.
+#[inline(always)]
+pub fn take_lowest(set: &mut u64) -> usize {
+    let lowest = set.trailing_zeros();
+    *set &= *set - 1;
+    lowest as usize
+}
+
 /// The numbers of the bits of a set, from the lowest up.
 #[inline(always)]
-pub fn set_bits(mut set: u32) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
-        (set != 0).then(|| {
-            let lowest = set.trailing_zeros();
-            set &= set - 1;
-            lowest as usize
-        })
-    })
+pub fn set_bits(set: u32) -> impl Iterator<Item = usize> {
+    let mut left = u64::from(set);
+    std::iter::from_fn(move || (left != 0).then(|| take_lowest(&mut left)))
 }
 
 #[cfg(test)]

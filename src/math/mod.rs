@@ -11,7 +11,7 @@ mod offset;
 mod ray;
 
 pub use aabb::Aabb;
-pub use bits::set_bits;
+pub use bits::{set_bits, take_lowest};
 pub use frame::Frame;
 pub use isa::{Isa, IsaError};
 pub(crate) use lanes::PortableLanes;

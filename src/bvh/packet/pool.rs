@@ -5,7 +5,7 @@ use super::super::node::LEAF;
 use super::super::simd::NodeTest;
 use super::super::stack::{BOTTOM, DONE, Stack};
 use super::super::tree::Bvh;
-use crate::math::Ray;
+use crate::math::{Ray, take_lowest};
 
 /// Rays that go by themselves at the same time.
 pub(super) const POOL: usize = 64;
@@ -18,14 +18,6 @@ pub(super) struct Pool<Q, const STACK: usize> {
     nodes: u64,
     leaves: u64,
     free: u64,
-}
-
-/// Takes the lowest bit out of a set.
-#[inline(always)]
-pub(super) fn take(set: &mut u64) -> usize {
-    let lowest = set.trailing_zeros();
-    *set &= *set - 1;
-    lowest as usize
 }
 
 impl<Q: Copy, const STACK: usize> Pool<Q, STACK> {
@@ -60,7 +52,7 @@ impl<Q: Copy, const STACK: usize> Pool<Q, STACK> {
         mut lane: Lane<Q>,
         stack: impl FnOnce(&mut Stack<STACK>, usize) -> usize,
     ) -> usize {
-        let number = take(&mut self.free);
+        let number = take_lowest(&mut self.free);
         lane.top = stack(&mut self.stacks[number], BOTTOM) as u32;
         if lane.at & LEAF == 0 {
             self.nodes |= 1 << number;
@@ -101,7 +93,7 @@ impl<Q: Copy, const STACK: usize> Pool<Q, STACK> {
             self.nodes &= !set;
             work.nodes += u64::from(now.count_ones());
             while now != 0 {
-                let number = take(&mut now);
+                let number = take_lowest(&mut now);
                 let (lane, stack) = (&mut self.lanes[number], &mut self.stacks[number]);
                 lane.step_at_node::<N, false, STACK>(stack, bvh.nodes());
                 let at = lane.at;
@@ -110,7 +102,7 @@ impl<Q: Copy, const STACK: usize> Pool<Q, STACK> {
             let mut now = set & self.leaves;
             self.leaves &= !set;
             while now != 0 {
-                let number = take(&mut now);
+                let number = take_lowest(&mut now);
                 let (lane, stack) = (&mut self.lanes[number], &mut self.stacks[number]);
                 lane.step_at_leaf::<N, false, STACK>(stack, (leaves, rays), &mut work.blocks);
                 let at = lane.at;
