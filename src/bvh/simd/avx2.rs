@@ -9,15 +9,17 @@ use std::arch::x86_64::{
     _mm256_movemask_ps, _mm256_mul_ps, _mm256_permutevar8x32_epi32, _mm256_permutevar8x32_ps,
     _mm256_set1_ps, _mm256_storeu_ps, _mm256_storeu_si256, _mm256_sub_ps,
 };
+use std::marker::PhantomData;
 
 use super::super::node::{WIDTH, WideNode};
 use super::super::slab::{FAR_MARGIN, PLANES, SlabRay};
 use super::{Kernel, NodeTest};
-use crate::math::{Avx2Lanes, Isa};
+use crate::math::{Avx2Lanes, Isa, Lanes};
 
-/// Eight lanes at once. Used only inside [`with_avx2`].
+/// Eight children at once, and as many rays as `R` has lanes. Used only inside [`with_avx2`] and
+/// [`super::avx512::with_avx512`].
 #[derive(Debug)]
-pub(in super::super) struct Avx2;
+pub(in super::super) struct Avx2<R>(PhantomData<R>);
 
 /// Runs `kernel`, compiled for AVX2.
 ///
@@ -26,7 +28,7 @@ pub(in super::super) struct Avx2;
 pub(super) fn with_avx2<K: Kernel>(kernel: K) -> K::Answer {
     #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
     fn compiled<K: Kernel>(kernel: K) -> K::Answer {
-        kernel.run::<Avx2>()
+        kernel.run::<Avx2<Avx2Lanes>>()
     }
     assert!(Isa::Avx2.is_available(), "this processor has no AVX2");
     // SAFETY: the features were just checked.
@@ -51,12 +53,12 @@ fn permutation(order: u64) -> __m256i {
     unsafe { _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(order.cast_signed())) }
 }
 
-impl NodeTest for Avx2 {
+impl<R: Lanes> NodeTest for Avx2<R> {
     type PerSlot = __m256;
 
     type Eight = Avx2Lanes;
 
-    type Rays = Avx2Lanes;
+    type Rays = R;
 
     #[inline(always)]
     fn enter(node: &WideNode, ray: &SlabRay, limit: f32) -> (__m256, u32) {

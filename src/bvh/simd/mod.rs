@@ -1,5 +1,5 @@
 //! The SIMD room of the traversal, for each instruction set: one node against one ray, and eight
-//! numbers at once.
+//! or sixteen numbers at once.
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
