@@ -4,18 +4,18 @@
 )]
 
 use std::arch::x86_64::{
-    __m256, _CMP_EQ_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _mm256_add_ps, _mm256_and_ps, _mm256_andnot_ps,
-    _mm256_blendv_ps, _mm256_broadcast_ss, _mm256_castps_si256, _mm256_castsi256_ps, _mm256_cmp_ps,
-    _mm256_cmpeq_epi32, _mm256_cvtepi32_ps, _mm256_div_ps, _mm256_loadu_ps, _mm256_max_ps,
-    _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_or_ps, _mm256_permute2f128_ps,
-    _mm256_shuffle_ps, _mm256_sqrt_ps, _mm256_storeu_ps, _mm256_sub_ps, _mm256_unpackhi_ps,
-    _mm256_unpacklo_ps,
+    __m256, _CMP_EQ_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _mm_loadu_ps, _mm256_add_ps, _mm256_and_ps,
+    _mm256_andnot_ps, _mm256_blend_ps, _mm256_blendv_ps, _mm256_broadcast_ss, _mm256_castps_si256,
+    _mm256_castsi256_ps, _mm256_cmp_ps, _mm256_cmpeq_epi32, _mm256_cvtepi32_ps, _mm256_div_ps,
+    _mm256_loadu_ps, _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps, _mm256_or_ps,
+    _mm256_permute2f128_ps, _mm256_set_m128, _mm256_shuffle_ps, _mm256_sqrt_ps, _mm256_storeu_ps,
+    _mm256_sub_ps, _mm256_unpackhi_ps, _mm256_unpacklo_ps,
 };
 
 use super::avx2_doubles::Avx2Doubles;
 use super::avx2_ints::Avx2Ints;
 use super::registers::{float_methods, register_operators};
-use super::{IntLanes, LANES, LaneKernel, Lanes, ROW};
+use super::{FOUR, IntLanes, LANES, LaneKernel, Lanes, ROW};
 use crate::math::{Isa, Ray};
 
 /// Eight lanes in one register. Used only by kernels that [`run`] or the
@@ -73,6 +73,21 @@ impl Lanes for Avx2Lanes {
     fn splat(value: f32) -> Self {
         // SAFETY: AVX2 is there (see `Avx2Lanes`).
         Self(unsafe { _mm256_broadcast_ss(&value) })
+    }
+
+    #[inline(always)]
+    fn repeat(from: &[f32; FOUR]) -> Self {
+        // SAFETY: AVX2 is there (see `Avx2Lanes`); the array has four numbers.
+        unsafe {
+            let four = _mm_loadu_ps(from.as_ptr());
+            Self(_mm256_set_m128(four, four))
+        }
+    }
+
+    #[inline(always)]
+    fn alternate(even: Self, odd: Self) -> Self {
+        // SAFETY: AVX2 is there (see `Avx2Lanes`).
+        Self(unsafe { _mm256_blend_ps::<0xF0>(even.0, odd.0) })
     }
 
     #[inline(always)]

@@ -4,12 +4,13 @@
 )]
 
 use std::arch::x86_64::{
-    __m512, __mmask16, _CMP_EQ_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _mm256_maskz_loadu_ps, _mm256_storeu_ps,
-    _mm512_add_ps, _mm512_castps_si512, _mm512_castps256_ps512, _mm512_castps512_ps256,
-    _mm512_castsi512_ps, _mm512_cmp_ps_mask, _mm512_cmpeq_epi32_mask, _mm512_cvtepi32_ps,
-    _mm512_div_ps, _mm512_extractf32x8_ps, _mm512_insertf32x8, _mm512_loadu_ps,
-    _mm512_mask_blend_ps, _mm512_max_ps, _mm512_min_ps, _mm512_mul_ps, _mm512_set1_ps,
-    _mm512_sqrt_ps, _mm512_storeu_ps, _mm512_sub_ps, _mm512_zextps256_ps512,
+    __m512, __mmask16, _CMP_EQ_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _mm_loadu_ps, _mm256_maskz_loadu_ps,
+    _mm256_storeu_ps, _mm512_add_ps, _mm512_broadcast_f32x4, _mm512_castps_si512,
+    _mm512_castps256_ps512, _mm512_castps512_ps256, _mm512_castsi512_ps, _mm512_cmp_ps_mask,
+    _mm512_cmpeq_epi32_mask, _mm512_cvtepi32_ps, _mm512_div_ps, _mm512_extractf32x8_ps,
+    _mm512_insertf32x8, _mm512_loadu_ps, _mm512_mask_blend_ps, _mm512_max_ps, _mm512_min_ps,
+    _mm512_mul_ps, _mm512_set1_ps, _mm512_sqrt_ps, _mm512_storeu_ps, _mm512_sub_ps,
+    _mm512_zextps256_ps512,
 };
 use std::ops::{BitAnd, BitOr};
 
@@ -17,7 +18,7 @@ use super::avx2::{Avx2Lanes, load_ray, store_ray, transpose};
 use super::avx512_doubles::Avx512Doubles;
 use super::avx512_ints::Avx512Ints;
 use super::registers::{float_methods, register_operators};
-use super::{LANES, LaneKernel, Lanes, ROW};
+use super::{FOUR, LANES, LaneKernel, Lanes, ROW};
 use crate::math::{Isa, Ray};
 
 /// Sixteen lanes in one register. Used only by kernels that [`run`] has started, which checks that
@@ -142,6 +143,18 @@ impl Lanes for Avx512Lanes {
     fn splat(value: f32) -> Self {
         // SAFETY: AVX-512 is there (see `Avx512Lanes`).
         Self(unsafe { _mm512_set1_ps(value) })
+    }
+
+    #[inline(always)]
+    fn repeat(from: &[f32; FOUR]) -> Self {
+        // SAFETY: AVX-512 is there (see `Avx512Lanes`); the array has four numbers.
+        Self(unsafe { _mm512_broadcast_f32x4(_mm_loadu_ps(from.as_ptr())) })
+    }
+
+    #[inline(always)]
+    fn alternate(even: Self, odd: Self) -> Self {
+        // SAFETY: AVX-512 is there (see `Avx512Lanes`).
+        Self(unsafe { _mm512_mask_blend_ps(0xF0F0, even.0, odd.0) })
     }
 
     #[inline(always)]

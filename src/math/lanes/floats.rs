@@ -7,6 +7,9 @@ use crate::math::Ray;
 /// Numbers in half a row, of which [`Lanes::load`] and [`Lanes::store`] know.
 pub const LANES: usize = 8;
 
+/// Numbers that [`Lanes::repeat`] puts side by side, and [`Lanes::alternate`] takes together.
+pub(super) const FOUR: usize = 4;
+
 /// Room in memory for one [`Lanes`] of any width.
 pub const ROW: usize = 16;
 
@@ -37,6 +40,12 @@ pub trait Lanes:
 
     /// The first eight to memory.
     fn store(self, to: &mut [f32; LANES]);
+
+    /// The same four numbers again and again.
+    fn repeat(from: &[f32; FOUR]) -> Self;
+
+    /// The first four lanes from `even`, the next four from `odd`, and so on.
+    fn alternate(even: Self, odd: Self) -> Self;
 
     /// From the start of a row.
     fn load_row(from: &[f32; ROW]) -> Self;

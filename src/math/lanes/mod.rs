@@ -35,6 +35,7 @@ pub(crate) use avx2::Avx2Lanes;
 #[cfg(target_arch = "x86_64")]
 pub(crate) use avx512::Avx512Lanes;
 pub use doubles::DoubleLanes;
+use floats::FOUR;
 pub use floats::{LANES, Lanes, ROW};
 pub use ints::IntLanes;
 pub(crate) use portable::PortableLanes;

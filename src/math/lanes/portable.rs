@@ -4,7 +4,7 @@ use glam::{BVec4A, Vec3, Vec4};
 
 use super::portable_doubles::PortableDoubles;
 use super::portable_ints::PortableInts;
-use super::{LANES, Lanes, ROW};
+use super::{FOUR, LANES, Lanes, ROW};
 use crate::math::Ray;
 
 /// Eight lanes as two vectors of four.
@@ -37,6 +37,16 @@ impl Lanes for PortableLanes {
     type Doubles = PortableDoubles;
 
     const N: usize = LANES;
+
+    #[inline(always)]
+    fn repeat(from: &[f32; FOUR]) -> Self {
+        Self(Vec4::from_array(*from), Vec4::from_array(*from))
+    }
+
+    #[inline(always)]
+    fn alternate(even: Self, odd: Self) -> Self {
+        Self(even.0, odd.1)
+    }
 
     #[inline(always)]
     fn load_row(from: &[f32; ROW]) -> Self {

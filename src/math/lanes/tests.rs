@@ -112,6 +112,10 @@ fn all<L: Lanes>(first: usize) -> Vec<[u32; ROW]> {
         picked(a.eq(b)),
         picked(a.gt(b)),
     ]);
+    numbers.extend([
+        L::alternate(a, b),
+        L::repeat(&[ODD[3], ODD[4], ODD[5], EVEN[0]]),
+    ]);
     numbers.push(picked(L::ints_eq(i, L::Ints::splat(77))));
     numbers.push(picked(L::mask_of_bits(0xA553 >> first)));
     numbers.push(picked(L::without(a.lt(b), a.lt(L::splat(0.0)))));
