@@ -101,7 +101,7 @@ impl<Q> Lane<Q> {
         blocks: &mut u64,
     ) {
         let ray = (&rays[self.ray as usize], &self.slab);
-        let limit = leaves.visit::<ANY>(self.at & !LEAF, ray, &mut self.query, blocks);
+        let limit = leaves.visit::<N::Eight, ANY>(self.at & !LEAF, ray, &mut self.query, blocks);
         let mut top = self.top as usize;
         if !ANY && limit < self.limit {
             top = stack.cull::<N>(top, limit);

@@ -10,11 +10,11 @@ pub trait Leaves: Sync {
     /// Prepares a ray.
     fn query(&self, ray: &Ray, slab: &SlabRay) -> Self::Query;
 
-    /// Tests the leaf that begins with `block`; `ANY`: until the first hit.
+    /// Tests the leaf that begins with `block`, with eight lanes; `ANY`: until the first hit.
     ///
     /// Returns the ray parameter beyond which nothing matters any more: the closest hit so far, or
     /// negative infinity to stop at once. Adds the number of blocks to `blocks`.
-    fn visit<const ANY: bool>(
+    fn visit<V: Lanes, const ANY: bool>(
         &self,
         block: u32,
         ray: (&Ray, &SlabRay),

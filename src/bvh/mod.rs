@@ -28,6 +28,7 @@ mod slab;
 mod stack;
 mod stats;
 mod stream;
+mod stretches;
 mod traverse;
 mod tree;
 
@@ -35,6 +36,7 @@ pub use build::Progress;
 pub use leaves::{Leaves, PacketAnswers, PacketLeaves, Work};
 pub use packet::{PACKET, PacketRays, PerRay, groups};
 pub use settings::{BvhKind, BvhQuality, BvhSettings};
-pub use slab::{FAR_MARGIN, SlabRay, T_FAR, padded, padded_four};
+pub use slab::{FAR_MARGIN, SlabRay, T_FAR, padded, padded_each};
 pub use stats::BvhStats;
+pub use stretches::map_stretches;
 pub use tree::{BLOCK, Bvh, LeafBlocks, NO_PRIMITIVE, NodeId};

@@ -33,7 +33,7 @@ pub enum BvhQuality {
 pub struct BvhSettings {
     /// The split rule.
     pub kind: BvhKind,
-    /// Most primitives in one leaf, 1 to 255.
+    /// Most primitives in one leaf, 1 to 255. Two triangles that share an edge may be one.
     pub leaf_size: u32,
     /// The effort.
     pub quality: BvhQuality,

@@ -44,9 +44,9 @@ impl<L: Leaves, F: FnMut(usize, Option<&L::Query>), const ANY: bool, const STACK
                 } else {
                     let (block, blocks) = (at & !LEAF, &mut work.blocks);
                     let before = limit;
-                    limit = self
-                        .leaves
-                        .visit::<ANY>(block, (ray, &slab), &mut query, blocks);
+                    limit =
+                        self.leaves
+                            .visit::<N::Eight, ANY>(block, (ray, &slab), &mut query, blocks);
                     if limit == f32::NEG_INFINITY {
                         break;
                     }

@@ -53,20 +53,20 @@ fn padding(extent: f32, largest: f32) -> f32 {
     extent * PAD + (largest * ULP + MIN_PAD)
 }
 
-/// The same as [`padded`] for four boxes, a lane each: minimum and maximum per axis.
+/// The same as [`padded`] for many boxes, a lane each: minimum and maximum per axis.
 #[inline(always)]
-pub fn padded_four(boxes: &mut [[Vec4; 2]; 3]) {
+pub fn padded_each<V: Lanes>(boxes: &mut [[V; 2]; 3]) {
     let [[x0, x1], [y0, y1], [z0, z1]] = *boxes;
     let extents = [x1 - x0, y1 - y0, z1 - z0];
-    let larger = |lo: Vec4, hi: Vec4| lo.abs().max(hi.abs());
+    let larger = |lo: V, hi: V| lo.abs().max(hi.abs());
     let larger = [larger(x0, x1), larger(y0, y1), larger(z0, z1)];
     let extent = extents[0].max(extents[1]).max(extents[2]);
     let largest = larger[0].max(larger[1]).max(larger[2]);
-    let least = |largest: Vec4| largest * Vec4::splat(ULP) + Vec4::splat(MIN_PAD);
-    let pad = extent * Vec4::splat(PAD) + least(largest);
+    let least = |largest: V| largest * V::splat(ULP) + V::splat(MIN_PAD);
+    let pad = extent * V::splat(PAD) + least(largest);
     for axis in 0..3 {
-        let is_flat = extents[axis].cmpeq(Vec4::ZERO);
-        let pad = Vec4::select(is_flat, least(larger[axis]), pad);
+        let is_flat = extents[axis].eq(V::splat(0.0));
+        let pad = V::select(is_flat, least(larger[axis]), pad);
         let [lo, hi] = boxes[axis];
         boxes[axis] = [lo - pad, hi + pad];
     }
@@ -187,25 +187,24 @@ impl SlabRay {
         (near <= far * FAR_MARGIN).then_some(near)
     }
 
-    /// [`Self::enter`] for the [`padded`] forms of four boxes, a lane each with minimum and maximum
+    /// [`Self::enter`] for the [`padded`] forms of many boxes, a lane each with minimum and maximum
     /// per axis: the parameters, and a bit for each box that is met. The same numbers: of two planes
     /// of a box, the one that the direction meets first has the smaller parameter, in floating point
     /// too.
     #[inline(always)]
-    pub fn enter_four_padded(&self, mut boxes: [[Vec4; 2]; 3]) -> (Vec4, u32) {
-        padded_four(&mut boxes);
+    pub fn enter_each_padded<V: Lanes>(&self, mut boxes: [[V; 2]; 3]) -> (V, u32) {
+        padded_each(&mut boxes);
         let t = |axis: usize, side: usize| {
-            (boxes[axis][side & 1] - Vec4::splat(self.origin[axis]))
-                * Vec4::splat(self.inverse[axis])
+            (boxes[axis][side & 1] - V::splat(self.origin[axis])) * V::splat(self.inverse[axis])
         };
-        let [x, y, z] = [self.near_side(0), self.near_side(1), self.near_side(2)];
-        let near = t(0, x)
-            .max(t(1, y))
-            .max(t(2, z).max(Vec4::splat(self.t_min())));
-        let far = t(0, x ^ 1)
-            .min(t(1, y ^ 1))
-            .min(t(2, z ^ 1).min(Vec4::splat(self.t_max())));
-        (near, near.cmple(far * FAR_MARGIN).bitmask())
+        let sides = |axis: usize| {
+            let (low, high) = (t(axis, 0), t(axis, 1));
+            (low.min(high), low.max(high))
+        };
+        let (x, y, z) = (sides(0), sides(1), sides(2));
+        let near = x.0.max(y.0).max(z.0.max(V::splat(self.t_min())));
+        let far = x.1.min(y.1).min(z.1.min(V::splat(self.t_max())));
+        (near, V::bits(near.le(far * V::splat(FAR_MARGIN))))
     }
 
     /// The origin, then [`Self::t_min`].

@@ -16,6 +16,8 @@ pub struct BvhStats {
     pub leaves: usize,
     /// Primitives in the tree.
     pub primitives: usize,
+    /// How many of them are two triangles that share an edge.
+    pub quads: usize,
     /// Primitives left out because they have no area or no finite box.
     pub excluded: usize,
     /// Depth of the deepest leaf; the root has depth 0.
@@ -36,14 +38,23 @@ pub struct BvhStats {
     pub leaf_histogram: BTreeMap<usize, usize>,
     /// Memory in bytes.
     pub bytes: usize,
-    /// Memory in bytes by primitive.
-    pub bytes_per_primitive: f64,
+    /// Memory in bytes by shape; a quad is two.
+    pub bytes_per_shape: f64,
     /// Wall-clock time of the build in seconds.
     pub build_seconds: f64,
 }
 
+impl BvhStats {
+    /// With this memory.
+    pub fn set_bytes(&mut self, bytes: usize) {
+        self.bytes = bytes;
+        let shapes = self.primitives + self.quads;
+        self.bytes_per_shape = bytes as f64 / shapes.max(1) as f64;
+    }
+}
+
 impl Bvh {
-    /// Walks the tree.
+    /// Walks the tree, which knows nothing of quads.
     pub fn stats(&self) -> BvhStats {
         let mut stats = BvhStats {
             nodes: self.node_count(),
@@ -57,7 +68,7 @@ impl Bvh {
             return stats;
         };
         (stats.expected_nodes, stats.expected_blocks) = self.expected_visits();
-        stats.bytes_per_primitive = stats.bytes as f64 / stats.primitives.max(1) as f64;
+        stats.set_bytes(stats.bytes);
         let mut depth_sum = 0;
         let mut cost = 0.0;
         let mut open = vec![(root, 0)];

@@ -2,8 +2,9 @@ use std::ops::{ControlFlow, Range};
 use std::sync::Arc;
 
 use super::block::ID_LIMIT;
-use super::leaf::{LeafOrder, bounds};
+use super::leaf::LeafOrder;
 use super::packet_leaf::PacketHits;
+use super::quads::LeafPrimitives;
 use super::refine::{refine, refine_meshes};
 use super::sweep::Sweep;
 use super::{Hit, Instance, InstanceStats, Instances, Placement, Shapes};
@@ -20,7 +21,7 @@ pub struct TraceCounts {
     pub rays: u64,
     /// Boxes tested; a node counts all its eight, whether or not it is full.
     pub box_tests: u64,
-    /// Primitives tested; a block counts four, whether or not it is full.
+    /// Primitives tested, a quad as one; a block counts four, whether or not it is full.
     pub primitive_tests: u64,
 }
 
@@ -36,6 +37,9 @@ impl TraceCounts {
 /// copied: the batch tracing interface.
 ///
 /// Primitive ids count the shapes first, then the triangles of each instance.
+///
+/// In a hierarchy of kind [`BvhKind::Sah`] two triangles that share an edge are one primitive, a quad, if
+/// their vertices are in the order for it: [`Shapes::turn_to_quads`].
 ///
 /// The answer to a ray does not depend on the tree: every kind of [`BvhSettings`] gives the same
 /// bits. Triangles are watertight and have two sides; those without area or with a vertex that is
@@ -73,7 +77,6 @@ impl Aggregate {
         progress: &Progress<'_>,
     ) -> Option<Self> {
         assert!(shapes.len() < ID_LIMIT as usize, "too many primitives");
-        let bounds = |id| bounds(&shapes, id);
         let is_refined = settings.quality == BvhQuality::High && shapes.len() <= SMALL;
         let quality = match settings.quality {
             BvhQuality::High if !is_refined => BvhQuality::Standard,
@@ -83,8 +86,9 @@ impl Aggregate {
             quality,
             ..settings
         };
-        let (mut bvh, ids) = Bvh::build_with(shapes.len(), &bounds, &first, progress)?;
-        let leaves = LeafOrder::new(&shapes, &mut bvh, &ids);
+        let primitives = LeafPrimitives::new(&shapes, settings.kind);
+        let (mut bvh, ids) = primitives.build(&first, progress)?;
+        let leaves = LeafOrder::new(&primitives, &mut bvh, &ids);
         // The other kinds are there to be compared.
         let is_best = settings.kind == BvhKind::Sah;
         let sweep = is_best.then(|| Sweep::new(&shapes)).flatten();
@@ -137,8 +141,9 @@ impl Aggregate {
 
     /// [`Self::refined`] without the instances.
     pub(super) fn refined_alone(&self, progress: &Progress<'_>) -> Option<Self> {
-        let (mut bvh, ids) = refine(&self.shapes, self.leaf_size, progress)?;
-        let leaves = LeafOrder::new(&self.shapes, &mut bvh, &ids);
+        let primitives = LeafPrimitives::new(&self.shapes, BvhKind::Sah);
+        let (mut bvh, ids) = refine(&primitives, self.leaf_size, progress)?;
+        let leaves = LeafOrder::new(&primitives, &mut bvh, &ids);
         Some(Self {
             shapes: Arc::clone(&self.shapes),
             bvh: Arc::new(bvh),
@@ -211,20 +216,20 @@ impl Aggregate {
         root.map_or(Aabb::EMPTY, |root| self.bvh.bounds(root))
     }
 
-    /// Ids of all primitives below a node of [`Self::bvh`].
+    /// Ids of all shapes below a node of [`Self::bvh`].
     pub fn primitives(&self, node: NodeId) -> impl Iterator<Item = u32> + '_ {
         let places = self.bvh.leaves(node).flatten();
-        places.map(|place| self.id_at(place))
+        places.flat_map(|place| self.ids_at(place))
     }
 
-    /// The primitive in a place, as in [`Bvh::leaves`].
-    fn id_at(&self, place: usize) -> u32 {
-        self.leaves.blocks()[place / BLOCK].id(place % BLOCK)
+    /// The shapes in a place, as in [`Bvh::leaves`].
+    fn ids_at(&self, place: usize) -> impl Iterator<Item = u32> + '_ {
+        self.leaves.blocks()[place / BLOCK].ids_of(place % BLOCK)
     }
 
-    /// Whether some of these places hold a primitive.
+    /// Whether some of these places hold a shape.
     pub(super) fn holds(&self, mut places: Range<usize>, id: u32) -> bool {
-        places.any(|place| self.id_at(place) == id)
+        places.any(|place| self.ids_at(place).any(|found| found == id))
     }
 
     /// The shapes, without those of instances.
@@ -232,7 +237,7 @@ impl Aggregate {
         &self.shapes
     }
 
-    /// The hierarchy over the shapes; its primitive ids are theirs.
+    /// The hierarchy over the shapes; what it counts as one primitive may be a quad.
     pub fn bvh(&self) -> &Bvh {
         &self.bvh
     }
@@ -241,8 +246,8 @@ impl Aggregate {
     /// included.
     pub fn stats(&self) -> BvhStats {
         let mut stats = self.bvh.stats();
-        stats.bytes += self.leaves.bytes();
-        stats.bytes_per_primitive = stats.bytes as f64 / stats.primitives.max(1) as f64;
+        stats.quads = self.leaves.quads();
+        stats.set_bytes(stats.bytes + self.leaves.bytes());
         stats
     }
 
@@ -258,7 +263,7 @@ impl Aggregate {
         }
     }
 
-    /// The same as [`Self::closest_hit`], two to four times as fast if every 32 rays in a row (the first
+    /// The same as [`Self::closest_hit`], several times as fast if every 32 rays in a row (the first
     /// 32, the next, and so on) take nearly the same way: those through 8 x 4 pixels, or several
     /// samples of fewer pixels. Best of all if they start at one point. Rays that part go on one by
     /// one; rays that never agreed in the signs and the longest axis of their directions cost a little

@@ -1,7 +1,7 @@
 use super::instances::InstanceBlock;
 use super::{Hit, Instances};
 use crate::bvh::{Leaves, SlabRay, Work};
-use crate::math::{Isa, Ray};
+use crate::math::{Isa, Lanes, Ray};
 
 /// Instances that are found at once for a ray. Most rays meet fewer, or something in one of them.
 const MOST: usize = 16;
@@ -50,7 +50,7 @@ impl Leaves for Find<'_> {
         Nearest::NONE
     }
 
-    fn visit<const ANY: bool>(
+    fn visit<V: Lanes, const ANY: bool>(
         &self,
         first: u32,
         (_, slab): (&Ray, &SlabRay),

@@ -1,7 +1,7 @@
 use super::instances::InstanceBlock;
 use super::{Hit, Instances, TraceCounts};
 use crate::bvh::{BLOCK, Leaves, SlabRay, Work};
-use crate::math::{Isa, Ray};
+use crate::math::{Isa, Lanes, Ray};
 
 /// Batches up to this size are traced an instance of a ray at a time.
 const FEW_RAYS: usize = 4;
@@ -172,7 +172,7 @@ impl Leaves for Walk<'_> {
         }
     }
 
-    fn visit<const ANY: bool>(
+    fn visit<V: Lanes, const ANY: bool>(
         &self,
         first: u32,
         ray: (&Ray, &SlabRay),

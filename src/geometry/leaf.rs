@@ -1,10 +1,9 @@
-use glam::Vec4;
-
-use super::block::Block;
+use super::block::{Block, TRIANGLES};
+use super::quads::LeafPrimitives;
 use super::triangle::{self, Shear};
 use super::{Hit, Shapes, Sphere};
-use crate::bvh::{BLOCK, Bvh, LeafBlocks, Leaves, SlabRay, padded};
-use crate::math::{Aabb, Ray, set_bits};
+use crate::bvh::{BLOCK, Bvh, LeafBlocks, Leaves, NO_PRIMITIVE, SlabRay, padded};
+use crate::math::{Aabb, Lanes, Ray, set_bits, take_lowest};
 
 /// The primitives in the order of the leaves, with their vertices at hand.
 #[derive(Clone, Debug)]
@@ -16,11 +15,16 @@ pub(super) struct LeafOrder {
 }
 
 impl LeafOrder {
-    /// The leaves of `bvh`, which come to share blocks.
-    pub(super) fn new(shapes: &Shapes, bvh: &mut Bvh, ids: &LeafBlocks) -> Self {
+    /// The leaves of `bvh` over `primitives`, of which `ids` are the numbers; they come to share
+    /// blocks.
+    pub(super) fn new(primitives: &LeafPrimitives<'_>, bvh: &mut Bvh, ids: &LeafBlocks) -> Self {
+        let shapes = primitives.shapes();
         let ids = bvh.share_blocks(ids);
+        let primitive = |id| (id != NO_PRIMITIVE).then(|| primitives.get(id));
         Self {
-            blocks: bvh.map_blocks(&ids, |ids, more| Block::new(shapes, ids, more)),
+            blocks: bvh.map_blocks(&ids, |ids, more| {
+                Block::new(shapes, ids.map(primitive), more)
+            }),
             first_sphere: u32::try_from(shapes.triangles.len())
                 .expect("the build checked the number"),
             spheres: shapes.spheres.clone(),
@@ -36,6 +40,12 @@ impl LeafOrder {
 
     pub(super) fn blocks(&self) -> &[Block] {
         &self.blocks
+    }
+
+    /// Number of quads in all leaves.
+    pub(super) fn quads(&self) -> usize {
+        let in_block = |block: &Block| (0..BLOCK).filter(|&place| block.is_quad(place)).count();
+        self.blocks.iter().map(in_block).sum()
     }
 
     pub(super) fn bytes(&self) -> usize {
@@ -114,8 +124,8 @@ impl Query {
 
     /// The same as [`Self::offer`] for each triangle of a block that the ray meets.
     #[inline(always)]
-    fn triangles(&mut self, (ray, slab): (&Ray, &SlabRay), block: &Block) {
-        let edges = self.shear.edges(slab.origin(), block);
+    fn triangles<V: Lanes>(&mut self, (ray, slab): (&Ray, &SlabRay), block: &Block) {
+        let edges = self.shear.edges::<V>(slab.origin(), block);
         let mut inside = edges.inside();
         if inside == 0 {
             return;
@@ -126,26 +136,29 @@ impl Query {
             inside &= !on_edge;
             self.triangles_on_edges((ray, slab), block, on_edge);
         }
-        let (t, b1, b2) = self.shear.hits(&edges, block);
-        let possible = t.cmpgt(Vec4::splat(slab.t_min()))
-            & t.cmplt(Vec4::splat(slab.t_max()))
-            & t.cmple(Vec4::splat(self.hit.t));
-        let mut met = inside & possible.bitmask();
+        let [t, b1, b2] = self.shear.hits(&edges, block);
+        let possible = t.gt(V::splat(slab.t_min()))
+            & t.lt(V::splat(slab.t_max()))
+            & t.le(V::splat(self.hit.t));
+        let mut met = u64::from(inside & V::bits(possible));
         if met == 0 {
             return;
         }
-        let (front, meets) = slab.enter_four_padded(block.bounds());
+        let (front, meets) = slab.enter_each_padded(block.bounds::<V>());
         let t = t.max(front);
-        met &= meets & t.cmplt(Vec4::splat(slab.t_max())).bitmask();
-        let (t, b1, b2) = (t.to_array(), b1.to_array(), b2.to_array());
+        met &= u64::from(meets & V::bits(t.lt(V::splat(slab.t_max()))));
+        let mut numbers = [[0.0; TRIANGLES]; 3];
+        let [t_each, b1_each, b2_each] = &mut numbers;
+        t.store(t_each);
+        b1.store(b1_each);
+        b2.store(b2_each);
         while met != 0 {
-            let lane = met.trailing_zeros() as usize % BLOCK;
-            met &= met - 1;
+            let lane = take_lowest(&mut met) % TRIANGLES;
             self.take(Hit {
-                t: t[lane],
+                t: t_each[lane],
                 primitive: block.id(lane),
-                b1: b1[lane],
-                b2: b2[lane],
+                b1: b1_each[lane],
+                b2: b2_each[lane],
             });
         }
     }
@@ -185,7 +198,7 @@ impl Leaves for LeafOrder {
     }
 
     #[inline(always)]
-    fn visit<const ANY: bool>(
+    fn visit<V: Lanes, const ANY: bool>(
         &self,
         first: u32,
         ray: (&Ray, &SlabRay),
@@ -194,7 +207,7 @@ impl Leaves for LeafOrder {
     ) -> f32 {
         for block in &self.blocks[first as usize..] {
             *blocks += 1;
-            query.triangles(ray, block);
+            query.triangles::<V>(ray, block);
             if !block.is_plain() && block.has_spheres() {
                 query.spheres(self, ray, block);
             }

@@ -1,10 +1,8 @@
-use glam::Vec4;
-
 use super::Hit;
-use super::block::Block;
+use super::block::{Block, Corner, TRIANGLES};
 use super::leaf::Query;
 use super::triangle::Shear;
-use crate::bvh::{BLOCK, PacketRays, PerRay, SlabRay, groups, padded_four};
+use crate::bvh::{BLOCK, PacketRays, PerRay, SlabRay, groups, padded_each};
 use crate::math::{Lanes, ROW, Ray, set_bits};
 
 const ZERO: PerRay = PerRay::splat(0.0);
@@ -42,46 +40,109 @@ impl Default for Packet {
     }
 }
 
-/// Four triangles prepared for a packet: per vertex and axis of the sheared space, seen from the
-/// origin if all rays share it.
-pub(super) type Corners = [[[f32; BLOCK]; 3]; 3];
-
-/// What a hit needs of four triangles.
-pub(super) struct Planes {
-    normal: [[f32; BLOCK]; 3],
-    /// Of the origin from the plane, times the length of the normal; if all rays share it.
-    distance: [f32; BLOCK],
-    /// Padded; minimum and maximum per axis.
-    bounds: [[[f32; BLOCK]; 2]; 3],
+/// The vertices of a block prepared for a packet: per axis of the sheared space, seen from the origin
+/// if all rays share it.
+pub(super) struct Corners {
+    /// Of both triangles of a primitive: `a` by primitive, then `c`.
+    shared: [[[f32; BLOCK]; 2]; 3],
+    /// By triangle.
+    own: [[f32; TRIANGLES]; 3],
 }
 
-impl Planes {
+impl Corners {
     #[inline(always)]
-    pub(super) fn new(block: &Block, axes: [u8; 3], corners: &Corners) -> Self {
-        let normal = block.normals(axes);
-        let first = |axis: usize| Vec4::from_array(corners[0][axis]);
-        let distance = normal[0] * first(0) + normal[1] * first(1) + normal[2] * first(2);
-        let mut bounds = block.bounds();
-        padded_four(&mut bounds);
+    pub(super) fn new<V: Lanes, const SHARED: bool>(
+        block: &Block,
+        axes: [u8; 3],
+        rays: &PacketRays,
+    ) -> Self {
         let mut out = Self {
-            normal: [[0.0; BLOCK]; 3],
-            distance: distance.to_array(),
-            bounds: [[[0.0; BLOCK]; 2]; 3],
+            shared: [[[0.0; BLOCK]; 2]; 3],
+            own: [[0.0; TRIANGLES]; 3],
         };
         // Without closures over arrays: those are not always inlined.
-        for axis in 0..3 {
-            out.normal[axis] = normal[axis].to_array();
-            out.bounds[axis] = [bounds[axis][0].to_array(), bounds[axis][1].to_array()];
+        for (i, axis) in axes.into_iter().enumerate() {
+            let mut shared = block.both_corners::<V>(axis);
+            let mut own = block.coordinate::<V>(Corner::Own, axis);
+            if SHARED {
+                let origin = V::splat(rays.first_origin(axis.into()));
+                (shared, own) = (shared - origin, own - origin);
+            }
+            let to = out.shared[i].as_flattened_mut().first_chunk_mut();
+            shared.store(to.expect("eight numbers"));
+            own.store(&mut out.own[i]);
         }
         out
     }
 }
 
-/// The edge functions of one triangle for a group of rays.
+/// What a hit needs of the triangles of a block.
+pub(super) struct Planes {
+    normal: [[f32; TRIANGLES]; 3],
+    /// Of the origin from the plane, times the length of the normal; if all rays share it.
+    distance: [f32; TRIANGLES],
+    /// Padded; minimum and maximum per axis.
+    bounds: [[[f32; TRIANGLES]; 2]; 3],
+}
+
+impl Planes {
+    #[inline(always)]
+    pub(super) fn new<V: Lanes>(block: &Block, axes: [u8; 3], corners: &Corners) -> Self {
+        let normal = block.normals::<V>(axes);
+        let first = |axis: usize| V::repeat(&corners.shared[axis][0]);
+        let distance = normal[0] * first(0) + normal[1] * first(1) + normal[2] * first(2);
+        let mut bounds = block.bounds::<V>();
+        padded_each(&mut bounds);
+        let mut out = Self {
+            normal: [[0.0; TRIANGLES]; 3],
+            distance: [0.0; TRIANGLES],
+            bounds: [[[0.0; TRIANGLES]; 2]; 3],
+        };
+        distance.store(&mut out.distance);
+        // Without closures over arrays: those are not always inlined.
+        for axis in 0..3 {
+            normal[axis].store(&mut out.normal[axis]);
+            bounds[axis][0].store(&mut out.bounds[axis][0]);
+            bounds[axis][1].store(&mut out.bounds[axis][1]);
+        }
+        out
+    }
+}
+
+/// The edge functions of one triangle for a group of rays. All three with the other sign mean the same:
+/// those of the second triangle of a quad have their own sign, those of a first one the other.
 pub(super) struct Edges<V> {
-    pub(super) u: V,
-    pub(super) v: V,
-    pub(super) w: V,
+    /// Of the vertex that the triangles of a quad do not share, and `c`.
+    pub(super) own_c: V,
+    /// With which the second and the third vertex of the triangle weigh.
+    pub(super) second: V,
+    pub(super) third: V,
+}
+
+impl<V: Lanes> Edges<V> {
+    /// Where they agree in sign.
+    #[inline(always)]
+    pub(super) fn inside(&self) -> V::Mask {
+        let zero = V::splat(0.0);
+        let least = self.own_c.min(self.second).min(self.third);
+        let most = self.own_c.max(self.second).max(self.third);
+        least.ge(zero) | most.le(zero)
+    }
+
+    /// Where one of them is zero.
+    #[inline(always)]
+    pub(super) fn some_zero(&self) -> V::Mask {
+        let zero = V::splat(0.0);
+        self.own_c.eq(zero) | self.second.eq(zero) | self.third.eq(zero)
+    }
+}
+
+/// What the two triangles of a quad have in common for a group of rays: the vertices that they share,
+/// sheared, and the edge function of `c` and `a`.
+pub(super) struct SharedEdge<V> {
+    a: [V; 2],
+    c: [V; 2],
+    ca: V,
 }
 
 impl Packet {
@@ -136,51 +197,78 @@ impl Packet {
         self.axes
     }
 
+    /// The edge that the triangles of the primitive in `place` share, for a group of rays.
+    #[inline(always)]
+    pub(super) fn shared_edge<V: Lanes, const SHARED: bool>(
+        &self,
+        rays: &PacketRays,
+        corners: &Corners,
+        (place, group): (usize, usize),
+    ) -> SharedEdge<V> {
+        let [x, y, z] = &corners.shared;
+        let (a, c) = (
+            [x[0][place], y[0][place], z[0][place]],
+            [x[1][place], y[1][place], z[1][place]],
+        );
+        let a = self.sheared::<V, SHARED>(rays, a, group);
+        let c = self.sheared::<V, SHARED>(rays, c, group);
+        SharedEdge {
+            a,
+            c,
+            ca: c[0] * a[1] - c[1] * a[0],
+        }
+    }
+
     /// The same as [`Shear::edges`] for one triangle and a group of rays.
     #[inline(always)]
     pub(super) fn edges<V: Lanes, const SHARED: bool>(
         &self,
         rays: &PacketRays,
         corners: &Corners,
+        edge: &SharedEdge<V>,
         (triangle, group): (usize, usize),
     ) -> Edges<V> {
-        let place = (triangle, group);
-        let a = self.corner::<V, SHARED>(rays, &corners[0], place);
-        let b = self.corner::<V, SHARED>(rays, &corners[1], place);
-        let c = self.corner::<V, SHARED>(rays, &corners[2], place);
+        let own = [0, 1, 2].map(|axis| corners.own[axis][triangle]);
+        let own = self.sheared::<V, SHARED>(rays, own, group);
+        let (a, c) = (edge.a, edge.c);
+        let a_own = a[0] * own[1] - a[1] * own[0];
+        let (second, third) = if triangle < BLOCK {
+            (edge.ca, a_own)
+        } else {
+            (a_own, edge.ca)
+        };
         Edges {
-            u: c.0 * b.1 - c.1 * b.0,
-            v: a.0 * c.1 - a.1 * c.0,
-            w: b.0 * a.1 - b.1 * a.0,
+            own_c: own[0] * c[1] - own[1] * c[0],
+            second,
+            third,
         }
     }
 
-    /// One vertex of a triangle as a group of rays sees it, sheared. Not a closure: those are not
-    /// always inlined.
+    /// A vertex as a group of rays sees it, sheared. Not a closure: those are not always inlined.
     #[inline(always)]
-    fn corner<V: Lanes, const SHARED: bool>(
+    fn sheared<V: Lanes, const SHARED: bool>(
         &self,
         rays: &PacketRays,
-        corner: &[[f32; BLOCK]; 3],
-        place: (usize, usize),
-    ) -> (V, V) {
-        let z = self.seen::<V, SHARED>(rays, corner, 2, place);
-        (
-            self.seen::<V, SHARED>(rays, corner, 0, place) - self.x.group::<V>(place.1) * z,
-            self.seen::<V, SHARED>(rays, corner, 1, place) - self.y.group::<V>(place.1) * z,
-        )
+        vertex: [f32; 3],
+        group: usize,
+    ) -> [V; 2] {
+        let z = self.seen::<V, SHARED>(rays, vertex, 2, group);
+        [
+            self.seen::<V, SHARED>(rays, vertex, 0, group) - self.x.group::<V>(group) * z,
+            self.seen::<V, SHARED>(rays, vertex, 1, group) - self.y.group::<V>(group) * z,
+        ]
     }
 
-    /// One coordinate of that vertex, of those in the order of the axes.
+    /// One coordinate of a vertex, of those in the order of the axes.
     #[inline(always)]
     fn seen<V: Lanes, const SHARED: bool>(
         &self,
         rays: &PacketRays,
-        corner: &[[f32; BLOCK]; 3],
+        vertex: [f32; 3],
         axis: usize,
-        (triangle, group): (usize, usize),
+        group: usize,
     ) -> V {
-        let value = V::splat(corner[axis][triangle]);
+        let value = V::splat(vertex[axis]);
         if SHARED {
             return value;
         }
@@ -204,16 +292,17 @@ impl Packet {
         let distance = if SHARED {
             V::splat(planes.distance[triangle])
         } else {
-            let at = |axis| self.seen::<V, SHARED>(rays, &corners[0], axis, (triangle, group));
+            let first = [0, 1, 2].map(|axis| corners.shared[axis][0][triangle % BLOCK]);
+            let at = |axis| self.seen::<V, SHARED>(rays, first, axis, group);
             normal[0] * at(0) + normal[1] * at(1) + normal[2] * at(2)
         };
         let at = |values: &PerRay| values.group::<V>(group);
         let slope = normal[0] * at(&self.x) + normal[1] * at(&self.y) + normal[2];
-        let inverse = V::splat(1.0) / (edges.u + edges.v + edges.w);
+        let inverse = V::splat(1.0) / (edges.own_c + edges.second + edges.third);
         [
             distance / slope * at(&self.z),
-            edges.v * inverse,
-            edges.w * inverse,
+            edges.second * inverse,
+            edges.third * inverse,
         ]
     }
 
@@ -231,7 +320,7 @@ impl Packet {
         if V::bits(possible) == 0 {
             return;
         }
-        let (front, meets) = rays.enter::<V>(&planes.bounds, triangle, group);
+        let (front, meets) = rays.enter::<V, TRIANGLES>(&planes.bounds, triangle, group);
         let t = t.max(front);
         let met = possible & meets & t.lt(t_max);
         self.take([t, b1, b2], met, primitive, group);

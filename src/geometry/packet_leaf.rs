@@ -1,9 +1,7 @@
-use glam::Vec4;
-
 use super::Hit;
 use super::block::Block;
 use super::leaf::{LeafOrder, Query};
-use super::packet::{Corners, Packet, Planes};
+use super::packet::{Corners, Packet, Planes, SharedEdge};
 use crate::bvh::{BLOCK, PACKET, PacketAnswers, PacketLeaves, PacketRays, PerRay, groups};
 use crate::math::{Lanes, Ray, set_bits};
 
@@ -82,17 +80,7 @@ impl Packet {
         block: &Block,
         active: u32,
     ) {
-        let axes = self.axes();
-        let mut corners: Corners = [[[0.0; BLOCK]; 3]; 3];
-        for (corner, out) in corners.iter_mut().enumerate() {
-            for (out, axis) in out.iter_mut().zip(axes) {
-                let mut values = block.coordinate(corner, axis.into());
-                if SHARED {
-                    values -= Vec4::splat(rays.1.first_origin(axis.into()));
-                }
-                *out = values.to_array();
-            }
-        }
+        let corners = Corners::new::<V, SHARED>(block, self.axes(), rays.1);
         let mut planes = None;
         let len = block.len();
         for group in 0..groups::<V>() {
@@ -100,31 +88,52 @@ impl Packet {
             if active == 0 {
                 continue;
             }
-            for triangle in 0..len {
-                let edges = self.edges::<V, SHARED>(rays.1, &corners, (triangle, group));
-                let zero = V::splat(0.0);
-                let least = edges.u.min(edges.v).min(edges.w);
-                let most = edges.u.max(edges.v).max(edges.w);
-                let inside = least.ge(zero) | most.le(zero);
-                if V::bits(inside) & active == 0 {
-                    continue;
+            for place in 0..len {
+                let edge = self.shared_edge::<V, SHARED>(rays.1, &corners, (place, group));
+                let mut meet = |triangle: usize| {
+                    self.meet::<V, SHARED>(
+                        rays,
+                        (block, &corners, &mut planes),
+                        &edge,
+                        (triangle, group, active),
+                    );
+                };
+                meet(place);
+                if block.is_quad(place) {
+                    meet(BLOCK + place);
                 }
-                // One of zero may be a rounding; where the others differ in sign it does not matter.
-                let on_edge = inside & (edges.u.eq(zero) | edges.v.eq(zero) | edges.w.eq(zero));
-                if V::bits(on_edge) != 0 {
-                    self.on_edge(rays, (block, triangle), (V::N * group, V::bits(on_edge)));
-                }
-                let inside = V::without(inside, on_edge);
-                // Not `get_or_insert_with`, which is not inlined.
-                if planes.is_none() {
-                    planes = Some(Planes::new(block, axes, &corners));
-                }
-                let Some(planes) = &planes else { continue };
-                let place = (triangle, group);
-                let hits = self.hits::<V, SHARED>(rays.1, (&corners, planes), &edges, place);
-                self.offer(rays.1, hits, inside, (planes, block.id(triangle), place));
             }
         }
+    }
+
+    /// Meets one triangle of a block.
+    #[inline(always)]
+    fn meet<V: Lanes, const SHARED: bool>(
+        &mut self,
+        rays: (&[Ray], &PacketRays),
+        (block, corners, planes): (&Block, &Corners, &mut Option<Planes>),
+        edge: &SharedEdge<V>,
+        (triangle, group, active): (usize, usize, u32),
+    ) {
+        let place = (triangle, group);
+        let edges = self.edges::<V, SHARED>(rays.1, corners, edge, place);
+        let inside = edges.inside();
+        if V::bits(inside) & active == 0 {
+            return;
+        }
+        // One of zero may be a rounding; where the others differ in sign it does not matter.
+        let on_edge = inside & edges.some_zero();
+        if V::bits(on_edge) != 0 {
+            self.on_edge(rays, (block, triangle), (V::N * group, V::bits(on_edge)));
+        }
+        let inside = V::without(inside, on_edge);
+        // Not `get_or_insert_with`, which is not inlined.
+        if planes.is_none() {
+            *planes = Some(Planes::new::<V>(block, self.axes(), corners));
+        }
+        let Some(planes) = planes else { return };
+        let hits = self.hits::<V, SHARED>(rays.1, (corners, planes), &edges, place);
+        self.offer(rays.1, hits, inside, (planes, block.id(triangle), place));
     }
 
     /// The rays in `lanes` from the `first` on, one at a time with exact edge functions.

@@ -1,14 +1,14 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use super::leaf::bounds;
-use super::{Aggregate, Instances, Shapes};
+use super::quads::LeafPrimitives;
+use super::{Aggregate, Instances};
 use crate::bvh::{Bvh, BvhKind, BvhQuality, BvhSettings, LeafBlocks, Progress};
 
-/// The best hierarchy over `shapes` that this program can build; reports the finished fraction
+/// The best hierarchy over `primitives` that this program can build; reports the finished fraction
 /// (0 to 1) to `progress`, which may stop it. `None` if it did.
 pub(super) fn refine(
-    shapes: &Shapes,
+    primitives: &LeafPrimitives<'_>,
     leaf_size: u32,
     progress: &Progress<'_>,
 ) -> Option<(Bvh, LeafBlocks)> {
@@ -17,7 +17,7 @@ pub(super) fn refine(
         leaf_size,
         quality: BvhQuality::High,
     };
-    Bvh::build_with(shapes.len(), &|id| bounds(shapes, id), &settings, progress)
+    primitives.build(&settings, progress)
 }
 
 /// `aggregate`, whose instances these are, with its own shapes and every mesh under the best
@@ -58,7 +58,7 @@ mod tests {
 
     use super::*;
     use crate::bvh::BvhStats;
-    use crate::geometry::Aggregate;
+    use crate::geometry::{Aggregate, Shapes};
     use crate::math::Isa;
 
     /// A sheet of 2 n² triangles.
@@ -68,7 +68,7 @@ mod tests {
             .collect();
         let triangles = (0..n)
             .flat_map(|y| (0..n).map(move |x| y * (n + 1) + x))
-            .flat_map(|a| [[a, a + 1, a + n + 1], [a + 1, a + n + 2, a + n + 1]])
+            .flat_map(|a| [[a, a + 1, a + n + 2], [a, a + n + 2, a + n + 1]])
             .collect();
         Shapes {
             positions,
@@ -99,18 +99,19 @@ mod tests {
     #[test]
     fn it_stops_at_the_next_report() {
         let shapes = sheet(100);
+        let primitives = LeafPrimitives::new(&shapes, BvhKind::Sah);
         let all = AtomicUsize::new(0);
         let count = |_| {
             all.fetch_add(1, Ordering::Relaxed);
             ControlFlow::Continue(())
         };
-        assert!(refine(&shapes, 4, &count).is_some());
+        assert!(refine(&primitives, 4, &count).is_some());
         let reports = AtomicUsize::new(0);
         let stop_at_third = |_| match reports.fetch_add(1, Ordering::Relaxed) {
             0 | 1 => ControlFlow::Continue(()),
             _ => ControlFlow::Break(()),
         };
-        assert!(refine(&shapes, 4, &stop_at_third).is_none());
+        assert!(refine(&primitives, 4, &stop_at_third).is_none());
         assert!(reports.into_inner() < all.into_inner());
     }
 }

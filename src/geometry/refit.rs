@@ -60,7 +60,7 @@ mod tests {
         });
         let quads = (0..n - 1).flat_map(|i| (0..n - 1).map(move |j| (i * n + j) as u32));
         let n = n as u32;
-        let triangles = quads.flat_map(|i| [[i, i + 1, i + n], [i + 1, i + n + 1, i + n]]);
+        let triangles = quads.flat_map(|i| [[i, i + 1, i + n + 1], [i, i + n + 1, i + n]]);
         Shapes {
             positions: positions.collect(),
             triangles: triangles.collect(),

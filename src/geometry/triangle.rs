@@ -1,7 +1,7 @@
-use glam::{DVec3, Vec3, Vec4};
+use glam::{DVec3, Vec3};
 
-use super::block::Block;
-use crate::math::{Aabb, Ray, gamma};
+use super::block::{Block, Corner};
+use crate::math::{Aabb, Lanes, Ray, gamma};
 
 /// The direction of a ray prepared for triangle tests: what shears it to run along one axis.
 ///
@@ -23,29 +23,46 @@ pub(super) struct TriangleHit {
     pub(super) b2: f32,
 }
 
-/// Edge functions of four triangles, and their first vertices seen from the ray's origin.
+/// Edge functions of the triangles of a block, and their first vertices seen from the ray's origin.
+///
+/// All three of each triangle, those of first triangles with the other sign: the product of vertices
+/// `p` and `q` is that of `q` and `p` with the other sign, to the bit.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Edges {
-    u: Vec4,
-    v: Vec4,
-    w: Vec4,
-    first: [Vec4; 3],
+pub(super) struct Edges<V> {
+    /// Of `c` and `a`: the shared edge.
+    ca: V,
+    /// Of the third vertex and `c`.
+    own_c: V,
+    /// Of `a` and the third vertex.
+    a_own: V,
+    first: [V; 3],
 }
 
-impl Edges {
+impl<V: Lanes> Edges<V> {
     /// A bit for each triangle around which the edge functions agree in sign.
     #[inline(always)]
     pub(super) fn inside(&self) -> u32 {
-        let least = self.u.min(self.v).min(self.w);
-        let most = self.u.max(self.v).max(self.w);
-        (least.cmpge(Vec4::ZERO) | most.cmple(Vec4::ZERO)).bitmask()
+        // What may be NaN alone comes last: the smaller of a number and NaN is the second of them.
+        let least = self.ca.min(self.own_c).min(self.a_own);
+        let most = self.ca.max(self.own_c).max(self.a_own);
+        V::bits(least.ge(V::splat(0.0)) | most.le(V::splat(0.0)))
     }
 
     /// A bit for each triangle with an edge function of zero, which may be a rounding.
     #[inline(always)]
     pub(super) fn on_edge(&self) -> u32 {
-        let zero = |e: Vec4| e.cmpeq(Vec4::ZERO);
-        (zero(self.u) | zero(self.v) | zero(self.w)).bitmask()
+        let zero = V::splat(0.0);
+        V::bits(self.ca.eq(zero) | self.own_c.eq(zero) | self.a_own.eq(zero))
+    }
+
+    /// The edge functions with which the second and third vertices of the triangles weigh, `a b c`
+    /// and `a c d`.
+    #[inline(always)]
+    fn weights(&self) -> [V; 2] {
+        [
+            V::alternate(self.ca, self.a_own),
+            V::alternate(self.a_own, self.ca),
+        ]
     }
 }
 
@@ -81,31 +98,35 @@ impl Shear {
         Self { axes, x, y, z }
     }
 
-    /// The edge functions of four triangles; those of a shared edge differ in sign only, so no ray
-    /// slips through between two triangles. Nothing depends on hits found before.
+    /// The edge functions of the triangles of a block; those of a shared edge differ in sign only, so no
+    /// ray slips through between two triangles. Nothing depends on hits found before.
     #[inline(always)]
-    pub(super) fn edges(&self, origin: &[f32; 4], block: &Block) -> Edges {
-        let (a, first) = self.corner(origin, block, 0);
-        let (b, _) = self.corner(origin, block, 1);
-        let (c, _) = self.corner(origin, block, 2);
+    pub(super) fn edges<V: Lanes>(&self, origin: &[f32; 4], block: &Block) -> Edges<V> {
+        let (a, first) = self.corner::<V>(origin, block, Corner::A);
+        let (c, _) = self.corner::<V>(origin, block, Corner::C);
+        let (own, _) = self.corner::<V>(origin, block, Corner::Own);
         Edges {
-            u: c.0 * b.1 - c.1 * b.0,
-            v: a.0 * c.1 - a.1 * c.0,
-            w: b.0 * a.1 - b.1 * a.0,
+            ca: c.0 * a.1 - c.1 * a.0,
+            own_c: own.0 * c.1 - own.1 * c.0,
+            a_own: a.0 * own.1 - a.1 * own.0,
             first,
         }
     }
 
-    /// One vertex of four triangles seen from the origin, sheared and as it is.
+    /// One vertex of all triangles seen from the origin, sheared and as it is.
     #[inline(always)]
-    fn corner(&self, origin: &[f32; 4], block: &Block, corner: usize) -> ((Vec4, Vec4), [Vec4; 3]) {
+    fn corner<V: Lanes>(
+        &self,
+        origin: &[f32; 4],
+        block: &Block,
+        corner: Corner,
+    ) -> ((V, V), [V; 3]) {
         let at = |axis: u8| {
-            let axis = usize::from(axis);
-            block.coordinate(corner, axis) - Vec4::splat(origin[axis % 4])
+            block.coordinate::<V>(corner, axis) - V::splat(origin[usize::from(axis) % 4])
         };
         let [x, y, z] = self.axes;
         let (x, y, z) = (at(x), at(y), at(z));
-        let sheared = (x - Vec4::splat(self.x) * z, y - Vec4::splat(self.y) * z);
+        let sheared = (x - V::splat(self.x) * z, y - V::splat(self.y) * z);
         (sheared, [x, y, z])
     }
 
@@ -114,17 +135,18 @@ impl Shear {
     /// The parameter is that of the triangle's plane: a large triangle that is near has vertices
     /// that are far, and their depths would not give it as well.
     #[inline(always)]
-    pub(super) fn hits(&self, edges: &Edges, block: &Block) -> (Vec4, Vec4, Vec4) {
-        let Edges { u, v, w, first } = *edges;
-        let normal = block.normals(self.axes);
+    pub(super) fn hits<V: Lanes>(&self, edges: &Edges<V>, block: &Block) -> [V; 3] {
+        let first = edges.first;
+        let normal = block.normals::<V>(self.axes);
         let distance = normal[0] * first[0] + normal[1] * first[1] + normal[2] * first[2];
-        let slope = normal[0] * Vec4::splat(self.x) + normal[1] * Vec4::splat(self.y) + normal[2];
-        let inverse = Vec4::ONE / (u + v + w);
-        (
-            distance / slope * Vec4::splat(self.z),
-            v * inverse,
-            w * inverse,
-        )
+        let slope = normal[0] * V::splat(self.x) + normal[1] * V::splat(self.y) + normal[2];
+        let [b1, b2] = edges.weights();
+        let inverse = V::splat(1.0) / (edges.own_c + b1 + b2);
+        [
+            distance / slope * V::splat(self.z),
+            b1 * inverse,
+            b2 * inverse,
+        ]
     }
 
     /// Meets both sides of one triangle: the same as [`Self::edges`] and [`Self::hits`], but an edge

@@ -324,7 +324,7 @@ impl<'a> Assembly<'a> {
                     .is_some_and(|d| d.dot(placed.face_normals[face]) < 0.0)
             });
             let flip = turns != placed.is_mirrored;
-            let [a, b, c] = triangle.corners.map(|corner| base + corner.position);
+            let [a, b, c] = placed.triangles[face].map(|vertex| base + vertex);
             slot.primitives.push(self.shapes.triangles.len() as u32);
             self.shapes
                 .triangles

@@ -66,9 +66,7 @@ pub(super) fn share_mesh(
         positions: (placed.positions.iter())
             .map(|&p| normalization.point_to_scene(p))
             .collect(),
-        triangles: (mesh.triangles.iter())
-            .map(|t| t.corners.map(|corner| corner.position))
-            .collect(),
+        triangles: placed.triangles,
         spheres: Vec::new(),
     };
     let tree = Aggregate::build_with(shapes, settings, progress)?;

@@ -6,6 +6,7 @@ mod exact;
 mod instances;
 mod oracle;
 mod packets;
+mod quads;
 mod scenes;
 mod selfhit;
 mod structure;

@@ -284,7 +284,7 @@ fn a_better_quality_expects_less_work_and_says_so() {
     let boxes = boxes(20_000);
     let cost = |quality| {
         let stats = build(&boxes, &settings(BvhKind::Sah, 4), quality).0.stats();
-        assert!((stats.bytes_per_primitive * 20_000.0 - stats.bytes as f64).abs() < 1.0);
+        assert!((stats.bytes_per_shape * 20_000.0 - stats.bytes as f64).abs() < 1.0);
         stats.expected_nodes + stats.expected_blocks
     };
     let (standard, high) = (cost(BvhQuality::Standard), cost(BvhQuality::High));
@@ -300,8 +300,10 @@ fn a_better_quality_expects_less_work_and_says_so() {
 
 #[test]
 fn the_end_point_overlap_is_that_of_the_boxes_around_the_points() {
-    // Two triangles side by side: each in its own box, or both in one.
-    let shapes = scenes::cube();
+    // Two triangles side by side: each in its own box, or both in one. Without common vertices: as
+    // quads, the faces of a cube overlap nowhere.
+    let cube = scenes::cube();
+    let shapes = scenes::soup((0..12).map(|triangle| cube.vertices(triangle)));
     let overlap = |leaf_size| {
         Aggregate::build(shapes.clone(), settings(BvhKind::Sah, leaf_size)).end_point_overlap(1_000)
     };
@@ -310,6 +312,8 @@ fn the_end_point_overlap_is_that_of_the_boxes_around_the_points() {
         (0.5..4.0).contains(&fine) && coarse < fine,
         "{fine} {coarse}"
     );
+    let quads = Aggregate::build(cube, BvhSettings::default());
+    assert!(quads.end_point_overlap(1_000) < 0.1 * fine);
     let none = Aggregate::build(scenes::soup([]), BvhSettings::default());
     assert_eq!(none.end_point_overlap(1_000), 0.0);
 }

@@ -26,7 +26,8 @@ fn info_tells_what_was_read_and_decided() {
     assert_eq!(json["bounds_max"], serde_json::json!([1.0, 1.5, 1.0]));
     assert_eq!(json["report"]["read"]["lights"], 1);
     assert_eq!(json["report"]["notes"], serde_json::json!([]));
-    assert_eq!(json["bvh"]["primitives"], 14);
+    assert_eq!(json["bvh"]["primitives"], 8);
+    assert_eq!(json["bvh"]["quads"], 6);
     assert_eq!(json["added_light"], false);
 }
 

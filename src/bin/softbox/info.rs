@@ -99,7 +99,9 @@ fn print(description: &Description, as_json: bool) -> std::io::Result<()> {
     let bvh = &description.bvh;
     writeln!(
         out,
-        "BVH: {} nodes, {} leaves, depth {} (leaves at {:.1} on average), SAH cost {:.2}, largest leaf {}, {} bytes, built in {:.3} s",
+        "BVH: {} primitives ({} quads), {} nodes, {} leaves, depth {} (leaves at {:.1} on average), SAH cost {:.2}, largest leaf {}, {} bytes, built in {:.3} s",
+        bvh.primitives,
+        bvh.quads,
         bvh.nodes,
         bvh.leaves,
         bvh.max_depth,
@@ -111,7 +113,7 @@ fn print(description: &Description, as_json: bool) -> std::io::Result<()> {
     )?;
     writeln!(
         out,
-        "rays: {:.2} nodes and {:.2} blocks expected, end-point overlap {:.2}; {:.1} bytes per primitive",
-        bvh.expected_nodes, bvh.expected_blocks, description.epo, bvh.bytes_per_primitive
+        "rays: {:.2} nodes and {:.2} blocks expected, end-point overlap {:.2}; {:.1} bytes per shape",
+        bvh.expected_nodes, bvh.expected_blocks, description.epo, bvh.bytes_per_shape
     )
 }

@@ -88,7 +88,7 @@ pub(crate) struct SettingsArgs {
     /// Bounding volume hierarchy: none, median or sah
     #[arg(long, value_parser = values::named::<BvhKind>)]
     pub(crate) bvh: Option<BvhKind>,
-    /// Most primitives in a leaf of the hierarchy [default: 4]
+    /// Most primitives in a leaf of the hierarchy; two triangles that share an edge are one [default: 4]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=255))]
     pub(crate) leaf_size: Option<u32>,
     /// Effort for the hierarchy: fast, standard, or high, which goes on while the picture renders

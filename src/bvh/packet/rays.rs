@@ -1,5 +1,4 @@
 use super::super::slab::{FAR_MARGIN, SlabRay, T_FAR, can_meet, inverse};
-use super::super::tree::BLOCK;
 use crate::math::{LANES, Lanes, ROW, Ray};
 
 /// Rays in a packet.
@@ -214,9 +213,9 @@ impl PacketRays {
     /// [`SlabRay::enter`] for the rays of a group and one box, which must not be empty: minimum and
     /// maximum per axis.
     #[inline(always)]
-    pub fn enter<V: Lanes>(
+    pub fn enter<V: Lanes, const N: usize>(
         &self,
-        boxes: &[[[f32; BLOCK]; 2]; 3],
+        boxes: &[[[f32; N]; 2]; 3],
         which: usize,
         group: usize,
     ) -> (V, V::Mask) {

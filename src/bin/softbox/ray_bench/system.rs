@@ -73,12 +73,13 @@ impl System {
 pub(crate) fn ours(isa: Isa) -> Vec<System> {
     let one = |name, quality| {
         System::new(name, Kind::value_variants(), move |shapes, threads| {
-            let shapes = shapes.clone();
+            let mut shapes = shapes.clone();
             let settings = BvhSettings {
                 quality,
                 ..BvhSettings::default()
             };
             Box::new(on_threads(threads, move || -> Box<dyn Tracer> {
+                shapes.turn_to_quads();
                 let built = Aggregate::build(shapes, settings);
                 let is_final = quality != BvhQuality::High || built.is_refined();
                 let built = (!is_final)

@@ -225,7 +225,8 @@ fn tint_triangles(
     let step = aggregate
         .bvh()
         .primitives_below(node)
-        .div_ceil(MOST_TRIANGLES)
+        // A quad is two.
+        .div_ceil(MOST_TRIANGLES / 2)
         .max(1);
     let triangles = aggregate
         .primitives(node)

@@ -212,7 +212,7 @@ fn hierarchy(ui: &mut Ui, bvh: &mut BvhSettings) {
     row(
         ui,
         "Leaf size",
-        "Most primitives in one leaf of the tree.",
+        "Most primitives in one leaf of the tree. Two triangles that share an edge, a quad, are one.",
         Slider::new(&mut bvh.leaf_size, 1..=64).logarithmic(true),
     );
 }

@@ -70,6 +70,7 @@ fn render_facts(status: &SessionStatus) -> Vec<(&'static str, String)> {
 fn bvh_facts(bvh: &BvhStats) -> Vec<(&'static str, String)> {
     vec![
         ("Primitives", bvh.primitives.to_string()),
+        ("Quads of these", bvh.quads.to_string()),
         ("Left out", bvh.excluded.to_string()),
         ("Nodes", bvh.nodes.to_string()),
         ("Leaves", bvh.leaves.to_string()),

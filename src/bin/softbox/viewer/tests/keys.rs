@@ -132,7 +132,7 @@ fn the_walk_through_the_boxes_follows_the_arrows() {
     };
     press(&mut harness, Key::V);
     assert!(
-        text(&harness).starts_with("depth 0, primitives 13"),
+        text(&harness).starts_with("depth 0, primitives 7"),
         "{}",
         text(&harness)
     );
