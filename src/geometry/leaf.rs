@@ -125,18 +125,18 @@ impl Query {
     /// The same as [`Self::offer`] for each triangle of a block that the ray meets.
     #[inline(always)]
     fn triangles<V: Lanes>(&mut self, (ray, slab): (&Ray, &SlabRay), block: &Block) {
-        let edges = self.shear.edges::<V>(slab.origin(), block);
-        let mut inside = edges.inside();
+        let (edges, first) = self.shear.edges::<V>(slab.origin(), block);
+        let mut inside = V::bits(edges.inside());
         if inside == 0 {
             return;
         }
         // One of zero may be a rounding; where the others differ in sign it does not matter.
-        let on_edge = edges.on_edge() & inside;
+        let on_edge = V::bits(edges.on_edge()) & inside;
         if on_edge != 0 {
             inside &= !on_edge;
             self.triangles_on_edges((ray, slab), block, on_edge);
         }
-        let [t, b1, b2] = self.shear.hits(&edges, block);
+        let [t, b1, b2] = self.shear.hits(&edges, first, block);
         let possible = t.gt(V::splat(slab.t_min()))
             & t.lt(V::splat(slab.t_max()))
             & t.le(V::splat(self.hit.t));

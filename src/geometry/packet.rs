@@ -1,7 +1,7 @@
 use super::Hit;
 use super::block::{Block, Corner, TRIANGLES};
 use super::leaf::Query;
-use super::triangle::Shear;
+use super::triangle::{Edges, Shear};
 use crate::bvh::{BLOCK, PacketRays, PerRay, SlabRay, groups, padded_each};
 use crate::math::{Lanes, ROW, Ray, set_bits};
 
@@ -109,34 +109,6 @@ impl Planes {
     }
 }
 
-/// The edge functions of one triangle for a group of rays. All three with the other sign mean the same:
-/// those of the second triangle of a quad have their own sign, those of a first one the other.
-pub(super) struct Edges<V> {
-    /// Of the vertex that the triangles of a quad do not share, and `c`.
-    pub(super) own_c: V,
-    /// With which the second and the third vertex of the triangle weigh.
-    pub(super) second: V,
-    pub(super) third: V,
-}
-
-impl<V: Lanes> Edges<V> {
-    /// Where they agree in sign.
-    #[inline(always)]
-    pub(super) fn inside(&self) -> V::Mask {
-        let zero = V::splat(0.0);
-        let least = self.own_c.min(self.second).min(self.third);
-        let most = self.own_c.max(self.second).max(self.third);
-        least.ge(zero) | most.le(zero)
-    }
-
-    /// Where one of them is zero.
-    #[inline(always)]
-    pub(super) fn some_zero(&self) -> V::Mask {
-        let zero = V::splat(0.0);
-        self.own_c.eq(zero) | self.second.eq(zero) | self.third.eq(zero)
-    }
-}
-
 /// What the two triangles of a quad have in common for a group of rays: the vertices that they share,
 /// sheared, and the edge function of `c` and `a`.
 pub(super) struct SharedEdge<V> {
@@ -231,16 +203,10 @@ impl Packet {
         let own = [0, 1, 2].map(|axis| corners.own[axis][triangle]);
         let own = self.sheared::<V, SHARED>(rays, own, group);
         let (a, c) = (edge.a, edge.c);
-        let a_own = a[0] * own[1] - a[1] * own[0];
-        let (second, third) = if triangle < BLOCK {
-            (edge.ca, a_own)
-        } else {
-            (a_own, edge.ca)
-        };
         Edges {
+            ca: edge.ca,
             own_c: own[0] * c[1] - own[1] * c[0],
-            second,
-            third,
+            a_own: a[0] * own[1] - a[1] * own[0],
         }
     }
 
@@ -298,12 +264,13 @@ impl Packet {
         };
         let at = |values: &PerRay| values.group::<V>(group);
         let slope = normal[0] * at(&self.x) + normal[1] * at(&self.y) + normal[2];
-        let inverse = V::splat(1.0) / (edges.own_c + edges.second + edges.third);
-        [
-            distance / slope * at(&self.z),
-            edges.second * inverse,
-            edges.third * inverse,
-        ]
+        let (b1, b2) = if triangle < BLOCK {
+            (edges.ca, edges.a_own)
+        } else {
+            (edges.a_own, edges.ca)
+        };
+        let inverse = V::splat(1.0) / (edges.own_c + b1 + b2);
+        [distance / slope * at(&self.z), b1 * inverse, b2 * inverse]
     }
 
     /// The same as [`Query::offer`] for the hits of a group with one triangle, where `inside`.

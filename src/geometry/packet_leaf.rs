@@ -122,7 +122,7 @@ impl Packet {
             return;
         }
         // One of zero may be a rounding; where the others differ in sign it does not matter.
-        let on_edge = inside & edges.some_zero();
+        let on_edge = inside & edges.on_edge();
         if V::bits(on_edge) != 0 {
             self.on_edge(rays, (block, triangle), (V::N * group, V::bits(on_edge)));
         }

@@ -23,46 +23,35 @@ pub(super) struct TriangleHit {
     pub(super) b2: f32,
 }
 
-/// Edge functions of the triangles of a block, and their first vertices seen from the ray's origin.
+/// The edge functions of a triangle in each lane: of one for many rays, or of many for one ray.
 ///
-/// All three of each triangle, those of first triangles with the other sign: the product of vertices
-/// `p` and `q` is that of `q` and `p` with the other sign, to the bit.
+/// All three are those of second triangles; first triangles have the other sign. The product of
+/// vertices `p` and `q` is that of `q` and `p` with the other sign, to the bit.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Edges<V> {
     /// Of `c` and `a`: the shared edge.
-    ca: V,
-    /// Of the third vertex and `c`.
-    own_c: V,
-    /// Of `a` and the third vertex.
-    a_own: V,
-    first: [V; 3],
+    pub(super) ca: V,
+    /// Of the vertex that is not shared and `c`.
+    pub(super) own_c: V,
+    /// Of `a` and the vertex that is not shared.
+    pub(super) a_own: V,
 }
 
 impl<V: Lanes> Edges<V> {
-    /// A bit for each triangle around which the edge functions agree in sign.
+    /// Where they agree in sign.
     #[inline(always)]
-    pub(super) fn inside(&self) -> u32 {
+    pub(super) fn inside(&self) -> V::Mask {
         // What may be NaN alone comes last: the smaller of a number and NaN is the second of them.
         let least = self.ca.min(self.own_c).min(self.a_own);
         let most = self.ca.max(self.own_c).max(self.a_own);
-        V::bits(least.ge(V::splat(0.0)) | most.le(V::splat(0.0)))
+        least.ge(V::splat(0.0)) | most.le(V::splat(0.0))
     }
 
-    /// A bit for each triangle with an edge function of zero, which may be a rounding.
+    /// Where one of them is zero, which may be a rounding.
     #[inline(always)]
-    pub(super) fn on_edge(&self) -> u32 {
+    pub(super) fn on_edge(&self) -> V::Mask {
         let zero = V::splat(0.0);
-        V::bits(self.ca.eq(zero) | self.own_c.eq(zero) | self.a_own.eq(zero))
-    }
-
-    /// The edge functions with which the second and third vertices of the triangles weigh, `a b c`
-    /// and `a c d`.
-    #[inline(always)]
-    fn weights(&self) -> [V; 2] {
-        [
-            V::alternate(self.ca, self.a_own),
-            V::alternate(self.a_own, self.ca),
-        ]
+        self.ca.eq(zero) | self.own_c.eq(zero) | self.a_own.eq(zero)
     }
 }
 
@@ -100,17 +89,19 @@ impl Shear {
 
     /// The edge functions of the triangles of a block; those of a shared edge differ in sign only, so no
     /// ray slips through between two triangles. Nothing depends on hits found before.
+    ///
+    /// Also gives the first vertices seen from the origin.
     #[inline(always)]
-    pub(super) fn edges<V: Lanes>(&self, origin: &[f32; 4], block: &Block) -> Edges<V> {
+    pub(super) fn edges<V: Lanes>(&self, origin: &[f32; 4], block: &Block) -> (Edges<V>, [V; 3]) {
         let (a, first) = self.corner::<V>(origin, block, Corner::A);
         let (c, _) = self.corner::<V>(origin, block, Corner::C);
         let (own, _) = self.corner::<V>(origin, block, Corner::Own);
-        Edges {
+        let edges = Edges {
             ca: c.0 * a.1 - c.1 * a.0,
             own_c: own.0 * c.1 - own.1 * c.0,
             a_own: a.0 * own.1 - a.1 * own.0,
-            first,
-        }
+        };
+        (edges, first)
     }
 
     /// One vertex of all triangles seen from the origin, sheared and as it is.
@@ -135,12 +126,12 @@ impl Shear {
     /// The parameter is that of the triangle's plane: a large triangle that is near has vertices
     /// that are far, and their depths would not give it as well.
     #[inline(always)]
-    pub(super) fn hits<V: Lanes>(&self, edges: &Edges<V>, block: &Block) -> [V; 3] {
-        let first = edges.first;
+    pub(super) fn hits<V: Lanes>(&self, edges: &Edges<V>, first: [V; 3], block: &Block) -> [V; 3] {
         let normal = block.normals::<V>(self.axes);
         let distance = normal[0] * first[0] + normal[1] * first[1] + normal[2] * first[2];
         let slope = normal[0] * V::splat(self.x) + normal[1] * V::splat(self.y) + normal[2];
-        let [b1, b2] = edges.weights();
+        let b1 = V::alternate(edges.ca, edges.a_own);
+        let b2 = V::alternate(edges.a_own, edges.ca);
         let inverse = V::splat(1.0) / (edges.own_c + b1 + b2);
         [
             distance / slope * V::splat(self.z),
