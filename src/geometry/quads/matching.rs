@@ -1,4 +1,4 @@
-use rustc_hash::FxHashMap;
+use std::collections::HashMap;
 
 use crate::math::Aabb;
 
@@ -94,7 +94,7 @@ impl Search<'_> {
     fn take_neighbours(&mut self) {
         let edges = self.turning.edges();
         // By both ends the number of the triangle and of its edge.
-        let mut half_edges = FxHashMap::default();
+        let mut half_edges = HashMap::new();
         for number in (0..self.triangles.len() as u32).filter(|&i| self.is_free[i as usize]) {
             for &edge in edges {
                 let ends = ends(self.triangles[number as usize], edge);
