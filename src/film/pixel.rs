@@ -116,11 +116,6 @@ impl PixelStats {
         self.limit = limit;
     }
 
-    /// True when sample number `sample` is to come.
-    pub fn lacks(&self, sample: u32) -> bool {
-        self.count <= sample && sample < self.limit
-    }
-
     /// True when sample number `sample` is the next one.
     pub fn takes(&self, sample: u32) -> bool {
         self.count == sample && sample < self.limit

@@ -4,6 +4,7 @@
 
 mod adaptive;
 mod background;
+mod batches;
 mod change;
 mod controller;
 mod first_hit_pass;

@@ -2,9 +2,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
 
+use super::batches::Batches;
 use super::workers::{WorkerArrays, Workers};
-use crate::film::{Cluster, Film, PixelStats, Tile};
-use crate::integrator::{PathCounts, PathId, PathTracer};
+use crate::film::{Film, Tile};
+use crate::integrator::{PathCounts, PathTracer};
 use crate::settings::IntegratorKind;
 
 /// Forgets all samples of `film`; false when `stop` said so, asked before each tile.
@@ -54,8 +55,8 @@ pub(super) fn render_pass(
             .map(|tile| {
                 workers.with_arrays(|arrays| {
                     let mut counts = PathCounts::default();
-                    let sizes = (workers.batch_size(), tracer.cluster_size() as u32);
-                    while next_batch(tile, target, sizes, &mut arrays.ids) {
+                    let mut batches = Batches::new(tile, target, tracer.cluster_size() as u32);
+                    while batches.next(workers.batch_size(), &mut arrays.ids) {
                         if is_over() {
                             return (counts, false);
                         }
@@ -74,37 +75,6 @@ pub(super) fn render_pass(
                 },
             )
     })
-}
-
-/// Collects up to `size` of the samples that `tile` still lacks, lowest numbers first, in whole
-/// clusters of pixels; false when there are none.
-fn next_batch(
-    tile: &Tile,
-    target: u32,
-    (size, cluster_size): (usize, u32),
-    ids: &mut Vec<PathId>,
-) -> bool {
-    ids.clear();
-    let pixels = |cluster: &Cluster| {
-        let inside = (cluster.pixels()).filter(|&[x, y]| tile.area().contains(x, y));
-        inside.map(|[x, y]| &tile.pixels()[tile.index(x, y)])
-    };
-    let open: Vec<Cluster> = (tile.clusters(cluster_size))
-        .filter(|cluster| pixels(cluster).any(|pixel| !pixel.is_closed()))
-        .collect();
-    let counts = open.iter().flat_map(pixels).filter(|p| !p.is_closed());
-    let first = counts.map(PixelStats::count).min().unwrap_or(target);
-    for sample in first..target {
-        // Paths of pixels that have the sample are needed as long as others share theirs.
-        let lacks = |cluster: &&Cluster| pixels(cluster).any(|pixel| pixel.lacks(sample));
-        for cluster in open.iter().filter(lacks) {
-            ids.extend(cluster.pixels().map(|pixel| PathId { pixel, sample }));
-            if ids.len() >= size {
-                return true;
-            }
-        }
-    }
-    !ids.is_empty()
 }
 
 /// Adds the samples to the pixels of `tile` that lack them.
