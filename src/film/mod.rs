@@ -9,7 +9,7 @@ mod tile;
 pub use cluster::Cluster;
 pub use pixel::PixelStats;
 pub use rows::{Pooled, Rows};
-pub use tile::{TILE_SIZE, Tile};
+pub use tile::{TILE_SIZE, Tile, TileSummary};
 
 use crate::image::Region;
 
@@ -83,22 +83,7 @@ impl Film {
     /// Sums over all pixels: samples taken, and the relative squared error of the picture as the
     /// samples tell it ([`Tile::squared_error`]).
     pub fn summary(&self) -> FilmSummary {
-        let mut summary = FilmSummary::default();
-        let mut error = 0.0;
-        for tile in &self.tiles {
-            let (sum, unknown) = tile.relative_squared_error();
-            error += sum;
-            summary.unknown += unknown;
-            summary.pixels += tile.pixels().len() as u64;
-            for pixel in tile.pixels() {
-                summary.samples += u64::from(pixel.count());
-                summary.most = summary.most.max(pixel.count());
-            }
-        }
-        if summary.unknown == 0 && summary.pixels > 0 {
-            summary.relative_error = Some((error / summary.pixels as f64).sqrt());
-        }
-        summary
+        self.tiles.iter().map(Tile::summary).collect()
     }
 }
 
@@ -115,6 +100,25 @@ pub struct FilmSummary {
     pub unknown: u64,
     /// Root of the mean relative squared error; `None` while some pixel's error is unknown.
     pub relative_error: Option<f64>,
+}
+
+/// From those of all tiles of a film, in their order.
+impl FromIterator<TileSummary> for FilmSummary {
+    fn from_iter<I: IntoIterator<Item = TileSummary>>(tiles: I) -> Self {
+        let mut summary = Self::default();
+        let mut error = 0.0;
+        for tile in tiles {
+            error += tile.relative_squared_error;
+            summary.unknown += tile.unknown;
+            summary.pixels += tile.pixels;
+            summary.samples += tile.samples;
+            summary.most = summary.most.max(tile.most);
+        }
+        if summary.unknown == 0 && summary.pixels > 0 {
+            summary.relative_error = Some((error / summary.pixels as f64).sqrt());
+        }
+        summary
+    }
 }
 
 #[cfg(test)]

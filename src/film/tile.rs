@@ -19,6 +19,21 @@ pub struct Tile {
     replicates: Replicates,
 }
 
+/// What [`Tile::summary`] tells.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TileSummary {
+    /// Number of pixels.
+    pub pixels: u64,
+    /// Samples in all pixels together.
+    pub samples: u64,
+    /// Most samples in one pixel.
+    pub most: u32,
+    /// Pixels with too few samples, whose error is unknown.
+    pub unknown: u64,
+    /// Sum of the relative squared errors of the others.
+    pub relative_squared_error: f64,
+}
+
 impl Tile {
     /// Forgets all samples.
     pub fn clear(&mut self) {
@@ -44,13 +59,26 @@ impl Tile {
         }
     }
 
+    /// What the pixels add to [`super::Film::summary`].
+    pub fn summary(&self) -> TileSummary {
+        let counts = || self.pixels.iter().map(PixelStats::count);
+        let (relative_squared_error, unknown) = self.relative_squared_error();
+        TileSummary {
+            pixels: self.pixels.len() as u64,
+            samples: counts().map(u64::from).sum(),
+            most: counts().max().unwrap_or(0),
+            relative_squared_error,
+            unknown,
+        }
+    }
+
     /// The sum over all pixels of their squared error relative to their brightness as in relMSE, the
     /// mean over the channels of e² / (µ² + 0.01); and the number of pixels whose error is unknown.
     ///
     /// The brightness µ is the pixel's own or that of its neighbours, whichever is less. Its own
     /// alone is large when, by chance, its error is: where few samples meet a light, that hides up to
     /// three quarters of the squared error.
-    pub(super) fn relative_squared_error(&self) -> (f64, u64) {
+    fn relative_squared_error(&self) -> (f64, u64) {
         let (width, height) = (self.area.width as usize, self.area.height as usize);
         let mut columns = vec![[0.0; 3]; width];
         let (mut sum, mut unknown) = (0.0, 0);

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::batches::Batches;
 use super::workers::{WorkerArrays, Workers};
-use crate::film::{Film, Tile};
+use crate::film::{Film, FilmSummary, Tile};
 use crate::integrator::{PathCounts, PathTracer};
 use crate::settings::IntegratorKind;
 
@@ -23,6 +23,12 @@ pub(super) fn clear_pass(
             true
         })
     })
+}
+
+/// [`Film::summary`], by all workers: on large pictures one alone would keep the others waiting.
+pub(super) fn summary_pass(workers: &Workers, film: &Film) -> FilmSummary {
+    let tiles: Vec<_> = workers.install(|| film.tiles().par_iter().map(Tile::summary).collect());
+    tiles.into_iter().collect()
 }
 
 /// When a pass ends early; asked before each batch of paths.

@@ -11,7 +11,7 @@ use crate::film::{Film, FilmSummary};
 use crate::integrator::{PathCounts, PathSettings, PathTracer};
 use crate::scene::PreparedScene;
 use crate::session::first_hit_pass::first_hit_pass;
-use crate::session::pass::{Stop, clear_pass, render_pass};
+use crate::session::pass::{Stop, clear_pass, render_pass, summary_pass};
 
 /// How far a pass may go beyond the time limit: this share of it, and as many seconds.
 const GRACE: f64 = 0.1;
@@ -251,7 +251,7 @@ impl Picture {
         self.seconds += elapsed;
         self.pass_seconds += elapsed;
         if is_complete {
-            self.summary = self.film.summary();
+            self.summary = summary_pass(workers, &self.film);
             self.last_pass = Some((target - done, std::mem::take(&mut self.pass_seconds)));
             let film = (&mut self.film, tracer.cluster_size());
             self.schedule.arrive(target, film, settings);
@@ -287,7 +287,7 @@ impl Picture {
 
     /// The picture so far.
     pub(super) fn snapshot(&mut self, workers: &Workers) -> Snapshot {
-        self.summary = self.film.summary();
+        self.summary = summary_pass(workers, &self.film);
         self.caption()
             .film(workers, &self.film, &self.summary, self.backdrop.as_ref())
     }
