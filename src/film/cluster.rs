@@ -25,7 +25,7 @@ impl Cluster {
             rows,
             step,
         } = *self;
-        // One range: two in one another take longer than a path's other accounts. All are powers of
+        // One range, as two nested ones are slow for clusters of one pixel. All numbers are powers of
         // two.
         (0..columns * rows).map(move |number| {
             let (column, row) = (number & (columns - 1), number >> columns.ilog2());

@@ -81,6 +81,7 @@ fn hull(ranges: impl Iterator<Item = Range<u32>>) -> Range<u32> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::pass::add_batch;
     use super::*;
     use crate::color::Rgb;
     use crate::film::Film;
@@ -103,15 +104,7 @@ mod tests {
             let whole = size.next_multiple_of(cluster_size as usize);
             assert!(ids.len() <= whole && !ids.is_empty());
             all.extend_from_slice(&ids);
-            for id in &ids {
-                let [x, y] = id.pixel;
-                if tile.area().contains(x, y) {
-                    let index = tile.index(x, y);
-                    if tile.pixels()[index].takes(id.sample) {
-                        tile.add(index, Rgb::ONE);
-                    }
-                }
-            }
+            add_batch(tile, &ids, &vec![Rgb::ONE; ids.len()]);
         }
         assert!(!batches.next(size, &mut ids));
         all

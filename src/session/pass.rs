@@ -3,9 +3,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use rayon::prelude::*;
 
 use super::batches::Batches;
-use super::workers::{WorkerArrays, Workers};
+use super::workers::Workers;
+use crate::color::Rgb;
 use crate::film::{Film, FilmSummary, Tile};
-use crate::integrator::{PathCounts, PathTracer};
+use crate::integrator::{PathCounts, PathId, PathTracer};
 use crate::settings::IntegratorKind;
 
 /// Forgets all samples of `film`; false when `stop` said so, asked before each tile.
@@ -67,7 +68,7 @@ pub(super) fn render_pass(
                             return (counts, false);
                         }
                         arrays.trace(tracer, integrator, &mut counts);
-                        add_batch(tile, arrays);
+                        add_batch(tile, &arrays.ids, &arrays.radiance);
                         has_begun.store(true, Ordering::Relaxed);
                     }
                     (counts, true)
@@ -83,9 +84,9 @@ pub(super) fn render_pass(
     })
 }
 
-/// Adds the samples to the pixels of `tile` that lack them.
-fn add_batch(tile: &mut Tile, arrays: &WorkerArrays) {
-    for (id, &radiance) in arrays.ids.iter().zip(&arrays.radiance) {
+/// Adds the samples `ids`, of the given `radiance`, to those pixels of `tile` whose next ones they are.
+pub(super) fn add_batch(tile: &mut Tile, ids: &[PathId], radiance: &[Rgb]) {
+    for (id, &radiance) in ids.iter().zip(radiance) {
         let [x, y] = id.pixel;
         if !tile.area().contains(x, y) {
             continue;
